@@ -29,9 +29,15 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t avail
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {
   if (world()) return make_ranked_solver(scene, plan, std::move(particles));
-  if (scene.backend == Backend::cpu) return make_cpu_solver(scene, plan, std::move(particles));
+  return make_local_solver(scene, plan, std::move(particles), nullptr);
+}
+
+std::unique_ptr<Solver> make_local_solver(const Scene& scene, const Plan& plan, Particles particles,
+                                          Communicator* ranks) {
+  if (scene.backend == Backend::cpu)
+    return make_cpu_solver(scene, plan, std::move(particles), ranks);
 #ifdef PBF_HAS_CUDA
-  return make_cuda_solver(scene, plan, std::move(particles));
+  return make_cuda_solver(scene, plan, std::move(particles), 0, ranks);
 #else
   throw Error(ExitCode::unavailable,
               "this build has no CUDA backend; run with --backend cpu, or build with "

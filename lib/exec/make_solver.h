@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "lib/exec/ranks/communicator.h"
 #include "lib/program/plan.h"
 #include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
@@ -21,5 +22,10 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t avail
 /// frees them during the construction. It does not prestabilize them: code that runs a scene from
 /// its start calls solver_of() (lib/run/start.h).
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
+
+/// The same in this process, also if the program runs on several ranks. ranks: null, or those of
+/// which the solver is a part (lib/exec/ranks/ranked_solver.h).
+std::unique_ptr<Solver> make_local_solver(const Scene& scene, const Plan& plan, Particles particles,
+                                          Communicator* ranks);
 
 }  // namespace pbf::exec_module

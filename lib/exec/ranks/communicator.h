@@ -23,12 +23,6 @@ struct Incoming {
   void* data;
   std::size_t bytes;
 };
-/// Bytes of which only the sender knows the number.
-struct Parcel {
-  int rank;  ///< to or from which it goes
-  std::vector<char> bytes{};
-};
-
 using TakePart = std::function<void(const std::vector<char>&)>;
 
 /// Messages and bytes that a rank has sent to others so far, apart from sums and commands.
@@ -46,14 +40,12 @@ class Communicator {
   virtual int size() const = 0;  ///< number of ranks
   /// Number of this rank among those of its machine; -1: they are threads of one process.
   virtual int local_rank() const = 0;
-  /// For `pbf info` and the run file: "Open MPI v4.1.4", "threads".
+  /// For the run file: "Open MPI v4.1.4", "threads".
   virtual std::string describe() const = 0;
 
   /// Sends and receives at the same time, at most one message for each ordered pair of ranks.
   /// Returns when all has arrived and what was sent may change.
   virtual void exchange(std::span<const Outgoing> out, std::span<const Incoming> in) = 0;
-  /// The same; the bytes of `in` are replaced.
-  virtual void exchange(const std::vector<Parcel>& out, std::vector<Parcel>& in) = 0;
   /// The bytes of all ranks, equally many of each, in the order of ranks.
   virtual std::vector<char> all_gather(const void* mine, std::size_t bytes) = 0;
   /// Each value becomes its sum over all ranks, modulo 2^64.

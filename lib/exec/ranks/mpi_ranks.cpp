@@ -36,21 +36,6 @@ class Mpi final : public MpiRanks {
     count(to);
     check(mpi_.exchange(to.data(), int(to.size()), from.data(), int(from.size())), "exchange");
   }
-  void exchange(const std::vector<Parcel>& out, std::vector<Parcel>& in) override {
-    std::vector<pbf_mpi_message> to;
-    for (const Parcel& p : out)
-      to.push_back({p.rank, const_cast<char*>(p.bytes.data()), p.bytes.size()});
-    count(to);
-    check(mpi_.send(to.data(), int(to.size())), "MPI_Isend");
-    for (Parcel& p : in) {
-      std::size_t bytes = 0;
-      check(mpi_.await(p.rank, &bytes), "MPI_Probe");
-      p.bytes.resize(bytes);
-      const pbf_mpi_message from{p.rank, p.bytes.data(), bytes};
-      check(mpi_.receive(&from), "MPI_Recv");
-    }
-    check(mpi_.finish_send(), "MPI_Waitall");
-  }
   std::vector<char> all_gather(const void* mine, std::size_t bytes) override {
     std::vector<char> all(bytes * std::size_t(size_));
     check(mpi_.all_gather(mine, bytes, all.data()), "MPI_Allgather");

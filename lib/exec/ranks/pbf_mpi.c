@@ -15,7 +15,7 @@
 
 enum { most_piece = 1 << 30 }; /* counts of MPI are int */
 enum { tag = 7, tag_ask, tag_answer };
-enum { host_bytes = 64, no_source = -1 };
+enum { host_bytes = 64 };
 
 #define TRY(call)                             \
   do {                                        \
@@ -99,19 +99,15 @@ static int ask_others(void) {
   }
   return MPI_SUCCESS;
 }
-/* What is awaited: the requests, or a message from a rank. */
-static int arrived(int source, int* there, MPI_Status* status) {
-  if (source == no_source) return MPI_Testall(used, requests, there, MPI_STATUSES_IGNORE);
-  return MPI_Iprobe(source, tag, MPI_COMM_WORLD, there, status);
-}
-/* After the deadline: waits for answers for a while, also for what is awaited. */
-static int find_silent(int source, int* there, MPI_Status* status) {
+static int all_done(int* there) { return MPI_Testall(used, requests, there, MPI_STATUSES_IGNORE); }
+/* After the deadline: waits for answers for a while, also for the requests. */
+static int find_silent(int* there) {
   const double begun = seconds(), most = deadline < 10 ? deadline : 10;
   const struct timespec nap = {0, 100000}; /* 0.1 ms */
   int silent = 0, reporter = 0;
   TRY(ask_others());
   while (seconds() - begun < most) {
-    TRY(arrived(source, there, status));
+    TRY(all_done(there));
     if (*there) return MPI_SUCCESS;
     TRY(answer_others());
     TRY(hear_answers());
@@ -130,31 +126,28 @@ static int find_silent(int source, int* there, MPI_Status* status) {
   }
   return PBF_MPI_SILENT;
 }
-/* patient: leaves the core to others, and waits ten times as long: rank 0 may be writing files. */
-static int await_arrival(int source, MPI_Status* status, int patient) {
+/* For all requests. patient: leaves the core to others, and waits ten times as long: rank 0 may be
+   writing files. */
+static int wait_for_all(int patient) {
   const struct timespec nap = {0, 100000}; /* 0.1 ms */
   double begun = 0;
   for (long tries = 0;; ++tries) {
     int there = 0;
-    TRY(arrived(source, &there, status));
-    if (there) return MPI_SUCCESS;
+    TRY(all_done(&there));
+    if (there) break;
     if (tries < 1000) continue;
     if (tries == 1000) begun = seconds();
     patient ? (void)nanosleep(&nap, NULL) : (void)sched_yield();
     if (tries % 64 != 0) continue;
     TRY(answer_others());
     if (deadline <= 0 || seconds() - begun < deadline * (patient ? 10 : 1)) continue;
-    TRY(find_silent(source, &there, status));
-    if (there) return MPI_SUCCESS;
+    TRY(find_silent(&there));
+    if (there) break;
     begun = seconds();
   }
-}
-static int wait_for_all(void) {
-  TRY(await_arrival(no_source, NULL, 0));
   used = 0;
   return MPI_SUCCESS;
 }
-
 static int start(double most_wait, int* rank, int* size) {
   int given = 0;
   TRY(MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &given));
@@ -185,31 +178,13 @@ static int exchange(const struct pbf_mpi_message* out, int outs, const struct pb
                     int ins) {
   for (int k = 0; k < ins; ++k) TRY(begin(&in[k], 0));
   for (int k = 0; k < outs; ++k) TRY(begin(&out[k], 1));
-  return wait_for_all();
+  return wait_for_all(0);
 }
-/* A message of which only the sender knows the size must be one piece. */
-static int send(const struct pbf_mpi_message* out, int outs) {
-  for (int k = 0; k < outs; ++k) {
-    if (out[k].bytes > most_piece) return MPI_ERR_COUNT;
-    TRY(begin(&out[k], 1));
-  }
-  return MPI_SUCCESS;
-}
-static int await(int from, size_t* bytes) {
-  MPI_Status status;
-  int n = 0;
-  TRY(await_arrival(from, &status, 0));
-  TRY(MPI_Get_count(&status, MPI_BYTE, &n));
-  *bytes = (size_t)n;
-  return MPI_SUCCESS;
-}
-/* Between send() and finish_send(): the requests of what was sent stay. */
-static int receive(const struct pbf_mpi_message* in) { return begin(in, 0); }
 static int all_gather(const void* mine, size_t bytes, void* all) {
   MPI_Request* r = NULL;
   TRY(next_request(&r));
   TRY(MPI_Iallgather(mine, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE, MPI_COMM_WORLD, r));
-  return wait_for_all();
+  return wait_for_all(0);
 }
 static int sum(int64_t* values, size_t n) {
   for (size_t done = 0; done < n;) {
@@ -218,7 +193,7 @@ static int sum(int64_t* values, size_t n) {
     TRY(next_request(&r));
     TRY(MPI_Iallreduce(MPI_IN_PLACE, values + done, (int)piece, MPI_INT64_T, MPI_SUM,
                        MPI_COMM_WORLD, r));
-    TRY(wait_for_all());
+    TRY(wait_for_all(0));
     done += piece;
   }
   return MPI_SUCCESS;
@@ -230,8 +205,7 @@ static int broadcast(void* data, size_t bytes, int patient) {
     MPI_Request* r = NULL;
     TRY(next_request(&r));
     TRY(MPI_Ibcast((char*)data + done, (int)piece, MPI_BYTE, 0, MPI_COMM_WORLD, r));
-    TRY(await_arrival(no_source, NULL, patient));
-    used = 0;
+    TRY(wait_for_all(patient));
     done += piece;
   } while (done < bytes);
   return MPI_SUCCESS;
@@ -241,8 +215,7 @@ static void abort_all(int code) { MPI_Abort(MPI_COMM_WORLD, code); }
 static int finish(void) { return MPI_Finalize(); }
 
 const struct pbf_mpi* pbf_mpi_table(void) {
-  static const struct pbf_mpi table = {PBF_MPI_TABLE, start,   describe,     exchange,   send,
-                                       await,         receive, wait_for_all, all_gather, sum,
-                                       broadcast,     trouble, abort_all,    finish};
+  static const struct pbf_mpi table = {PBF_MPI_TABLE, start,     describe, exchange,  all_gather,
+                                       sum,           broadcast, trouble,  abort_all, finish};
   return &table;
 }

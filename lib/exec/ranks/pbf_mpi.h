@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { PBF_MPI_TABLE = 2 }; /* changes with the table */
+enum { PBF_MPI_TABLE = 3 }; /* changes with the table */
 enum { PBF_MPI_SILENT = -1 };
 
 struct pbf_mpi_message {
@@ -24,12 +24,6 @@ struct pbf_mpi {
   /* All at once. Receives exactly the bytes that `in` says. */
   int (*exchange)(const struct pbf_mpi_message* out, int outs, const struct pbf_mpi_message* in,
                   int ins);
-  /* Messages of which only the sender knows the size, at most 1 GiB. They are sent, then for each
-     expected one await() tells its size and receive() takes it; all is done after finish_send(). */
-  int (*send)(const struct pbf_mpi_message* out, int outs);
-  int (*await)(int from, size_t* bytes);
-  int (*receive)(const struct pbf_mpi_message* in);
-  int (*finish_send)(void);
   int (*all_gather)(const void* mine, size_t bytes, void* all);
   int (*sum)(int64_t* values, size_t n);
   /* patient: leaves the core to others while it waits. */

@@ -121,14 +121,15 @@ IdsOfRanks by_layer(std::size_t n, const At& at, const Plan& plan, int ranks) {
 }
 
 template <class T>
-void pick(std::vector<T>& rows, const std::vector<int>& ids, std::size_t numbers) {
+std::vector<T> picked(const std::vector<T>& rows, const std::vector<int>& ids,
+                      std::size_t numbers) {
   std::vector<T> part;
   part.reserve(ids.size() * numbers);
   for (const int i : ids) {
     const auto row = rows.begin() + std::ptrdiff_t(std::size_t(i) * numbers);
     part.insert(part.end(), row, row + std::ptrdiff_t(numbers));
   }
-  rows = std::move(part);
+  return part;
 }
 
 }  // namespace
@@ -156,15 +157,20 @@ Particles part_of(const Particles& all, const std::vector<int>& ids) {
 }
 SolverState part_of(const SolverState& all, const std::vector<int>& ids, const Scene& scene,
                     const Plan& plan, int rank) {
-  SolverState s = all;
-  pick(s.position, ids, 3), pick(s.velocity, ids, 3), pick(s.id, ids, 1);
-  for (StoredField& f : s.fields) {
+  SolverState s;
+  s.precision = all.precision, s.updates = all.updates, s.steps = all.steps;
+  s.position = picked(all.position, ids, 3), s.velocity = picked(all.velocity, ids, 3);
+  s.id = picked(all.id, ids, 1);
+  for (const StoredField& f : all.fields) {
     const FieldInfo* info = field_of(plan, f.name);
-    gather_sums(f, scene, plan.capacity);
-    if (info && info->is_per_particle())
-      pick(f.values, ids, std::size_t(f.numbers));
-    else if (info && is_part(*info, plan) && rank != 0)
-      std::ranges::fill(f.values, 0);
+    StoredField& part = s.fields.emplace_back(StoredField{f.name, f.real, f.numbers});
+    if (info && info->is_per_particle()) {
+      part.values = picked(f.values, ids, std::size_t(f.numbers));
+      continue;
+    }
+    part.values = f.values;
+    gather_sums(part, scene, plan.capacity);
+    if (info && is_part(*info, plan) && rank != 0) std::ranges::fill(part.values, 0);
   }
   s.fields.push_back({field::row_state.name,
                       false,

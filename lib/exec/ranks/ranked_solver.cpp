@@ -5,10 +5,7 @@
 #include <utility>
 
 #include "lib/base/error.h"
-#include "lib/exec/cpu/cpu_solver.h"
-#ifdef PBF_HAS_CUDA
-#include "lib/exec/cuda/cuda_solver.h"
-#endif
+#include "lib/exec/make_solver.h"
 #include "lib/exec/ranks/rank_states.h"
 #include "lib/exec/ranks/slabs.h"
 #include "lib/program/exchanges.h"
@@ -22,18 +19,6 @@ namespace {
 Scene of_rank(Scene scene, const Plan& plan, int ranks) {
   scene.capacity = plan_ranks(plan, scene, ranks).capacity;
   return scene;
-}
-
-/// ranks: null: alone.
-std::unique_ptr<Solver> make_local(const Scene& scene, const Plan& plan, Particles particles,
-                                   Communicator* ranks) {
-#ifdef PBF_HAS_CUDA
-  if (scene.backend == Backend::cuda)
-    return make_cuda_solver(scene, plan, std::move(particles), 0, ranks);
-#endif
-  if (scene.backend == Backend::cuda)
-    throw Error(ExitCode::unavailable, "this build has no CUDA backend; run with --backend cpu");
-  return make_cpu_solver(scene, plan, std::move(particles), ranks);
 }
 
 /// Why a scene cannot run on several ranks; null: it can.
@@ -62,7 +47,7 @@ RankedSolver::RankedSolver(Communicator& ranks, const Scene& scene, const Plan& 
       whole_plan_(plan),
       plan_(make_plan(scene_, plan.particles, plan.start)) {
   require_ranks(scene, plan, ranks.size());
-  on_all([&] { local_ = make_local(scene_, plan_, std::move(particles), &ranks_); });
+  on_all([&] { local_ = make_local_solver(scene_, plan_, std::move(particles), &ranks_); });
 }
 RankedSolver::~RankedSolver() {
   if (ranks_.rank() == 0 && !ended_) try {
@@ -217,7 +202,7 @@ Inspection& RankedSolver::alone() {
       all.position.push_back({o[0] + h * x[0], o[1] + h * x[1], o[2] + h * x[2]});
     }
     all.velocity.resize(now.id.size());
-    alone_ = make_local(whole_scene_, whole_plan_, std::move(all), nullptr);
+    alone_ = make_local_solver(whole_scene_, whole_plan_, std::move(all), nullptr);
   }
   alone_->set_state(now);
   return *alone_->inspection();

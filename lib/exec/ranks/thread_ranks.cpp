@@ -71,10 +71,6 @@ class ThreadRank final : public Communicator {
       if (i.bytes) std::memcpy(i.data, bytes.data(), i.bytes);
     }
   }
-  void exchange(const std::vector<Parcel>& out, std::vector<Parcel>& in) override {
-    for (const Parcel& p : out) send(p.rank, p.bytes);
-    for (Parcel& p : in) p.bytes = exchange_.take(p.rank, rank_);
-  }
   std::vector<char> all_gather(const void* mine, std::size_t bytes) override {
     to_others(bytes_of(mine, bytes));
     std::vector<char> all;
