@@ -15,6 +15,23 @@ PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
 #endif
 }
 
+/// On a device, if all 32 threads of a warp are here with one `place`: the sum of their terms for
+/// the first of them, 0 for the others. Else the term. What is then added to the places is the
+/// same. Many threads that add to one number wait for each other.
+PBF_HD std::int64_t sum_of_warp([[maybe_unused]] const void* place, std::int64_t term) {
+#if defined(__CUDA_ARCH__)
+  constexpr unsigned all = 0xffffffffu;
+  if (__activemask() != all) return term;
+  int same = 0;
+  __match_all_sync(all, reinterpret_cast<unsigned long long>(place), &same);
+  if (!same) return term;
+  for (int k = 16; k > 0; k /= 2) term += __shfl_down_sync(all, term, k);
+  return threadIdx.x % 32 == 0 ? term : 0;
+#else
+  return term;
+#endif
+}
+
 PBF_HD void count_one(unsigned long long* count) {
 #if defined(__CUDA_ARCH__)
   atomicAdd(count, 1ull);
@@ -36,7 +53,8 @@ PBF_HD void raise_to(float* at, float value) {
 #endif
 }
 
-/// Reserves and returns the next free place; *count places were taken before.
+/// Reserves and returns the next free place; *count places were taken before. All threads of a warp
+/// that call it together have the same count.
 PBF_HD int take_place(int* count) {
 #if defined(__CUDA_ARCH__)
   // One atomic operation for all active threads of the warp.
@@ -49,6 +67,14 @@ PBF_HD int take_place(int* count) {
   return __atomic_fetch_add(count, 1, __ATOMIC_RELAXED);
 #else
   return 0;
+#endif
+}
+/// The same for counts of which each thread may have another.
+PBF_HD int take_place_of(int* count) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(count, 1);
+#else
+  return take_place(count);
 #endif
 }
 

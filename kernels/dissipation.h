@@ -55,9 +55,9 @@ struct DissipationBook {
                            : x > kMostDissipation ? kMostDissipation
                            : x == x               ? x
                                                   : 0;
-    const std::int64_t t = std::int64_t(bounded * kDissipationUnits);
     constexpr int bits = DissipationSum::bits;
     DissipationSum& sum = sums[(i >> 8) & last];
+    const std::int64_t t = sum_of_warp(&sum, std::int64_t(bounded * kDissipationUnits));
     if (const std::int64_t whole = t >> bits; whole != 0) add_whole(&sum.whole, whole);
     if (const std::int64_t rest = t & ((std::int64_t(1) << bits) - 1); rest != 0)
       add_whole(&sum.rest, rest);

@@ -59,6 +59,15 @@ struct MeasureCounts {
     take_larger(way_squared, o.way_squared);
   }
 };
+/// What the steps have counted.
+PBF_HD MeasureCounts counts_of(const StepCounts& steps) {
+  MeasureCounts s;
+  s.fast = std::int64_t(steps.fast);
+  s.repeats = std::int64_t(steps.repeats);
+  s.unresolved = std::int64_t(steps.unresolved);
+  s.way_squared = steps.way_squared;
+  return s;
+}
 
 /// Exponents of the units: every term of a quantity is below 2^e.
 struct MeasureUnits {
@@ -131,12 +140,7 @@ struct MeasurePass {
 
   PBF_HD MeasureCounts counts(int i) const {
     MeasureCounts s;
-    if (i == 0) {
-      s.fast = std::int64_t(step_counts->fast);
-      s.repeats = std::int64_t(step_counts->repeats);
-      s.unresolved = std::int64_t(step_counts->unresolved);
-      s.way_squared = step_counts->way_squared;
-    }
+    if (i == 0) s = counts_of(*step_counts);
     if (!finite(i)) {
       s.non_finite = 1;
       return s;
