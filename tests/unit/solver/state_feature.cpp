@@ -1,6 +1,5 @@
 // A feature with a field of the state, which stands in this file alone: temperature, which spreads
 // to neighbors. Sort, keep, going back, checkpoint, resume, memory and trace follow from the field.
-#include "lib/exec/cpu/cpu_exec.h"
 #include "lib/io/checkpoint.h"
 #include "lib/run/emit.h"
 #include "lib/scene/load.h"
@@ -8,6 +7,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/page_exec.h"
 #include "tests/support/run_file_samples.h"
+#include "tests/support/scalar_exec.h"
 
 namespace pbf::program_module::field {
 /// K
@@ -97,8 +97,8 @@ struct Warm {
   Particles particles() const { return emit_particles(scene, ""); }
   template <class Real>
   std::unique_ptr<Solver> solver(int threads = 1) const {
-    return std::make_unique<StepSolver<Real, CpuExec, MoreFeatures>>(scene, plan, particles(),
-                                                                     threads);
+    return std::make_unique<StepSolver<Real, ScalarExec, MoreFeatures>>(scene, plan, particles(),
+                                                                        threads);
   }
 };
 
