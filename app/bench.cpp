@@ -66,7 +66,9 @@ std::vector<Column<BenchRow>> columns() {
       {"bytes_per_particle", [](R r) { return double(r.solver.bytes) / double(r.particles); }},
       {"peak_mb", [](R r) { return r.peak_mb; }},
       {"launches_per_update",
-       [](R r) { return r.solver.launches > 0 ? Cell(r.solver.launches) : Cell(); }}};
+       [](R r) { return r.solver.launches > 0 ? Cell(r.solver.launches) : Cell(); }},
+      {"exchange_hidden",
+       [](R r) { return r.solver.hidden_exchange > 0 ? Cell(r.solver.hidden_exchange) : Cell(); }}};
   for (const Stage& stage : kStages) {
     if (!stage.of_update) continue;
     all.push_back({std::string("ms_") + stage.name, [&stage](R r) {

@@ -95,12 +95,12 @@ int on_ranks(int argc, char** argv) {
   // The run that a batch starts inherits the rank.
   if (!words.empty() && words[0] == "batch" && std::ranges::find(words, "--only") != words.end())
     return guarded(argc, argv);
-  if (words.empty() || words[0] != "run") {
+  if (words.empty() || (words[0] != "run" && words[0] != "bench")) {
     const ExitCode code = ExitCode::bad_input;
     if (launched_rank() != 0) return static_cast<int>(code);
     return fail(
         code,
-        "of the commands, only run and batch --only work on several ranks; start the others "
+        "of the commands, only run, bench and batch --only work on several ranks; start the others "
         "without mpirun or srun");
   }
   try {

@@ -27,53 +27,79 @@ struct RanksOfRow {
   }
 };
 
-/// Lists the rows for `rank`; beyond `room` it only counts.
+/// Lists the rows for each other rank; beyond `room` it only counts.
 template <class Real>
 struct SelectRowsPass {
   RanksOfRow<Real> ranks;
-  int rank;
-  int *list, *count;
+  int me;
+  int* list;   ///< of each rank: `room` rows
+  int* count;  ///< of each rank
   int room;
   PBF_HD void operator()(int i) const {
-    if (!ranks(i).has(rank)) return;
-    const int k = take_place(count);
-    if (k < room) list[k] = i;
+    const auto to = ranks(i);
+    if (to.has(me - 1)) add(i, me - 1, take_place(count + me - 1));
+    if (to.has(me + 1)) add(i, me + 1, take_place(count + me + 1));
+    for (int r = to.low; r <= to.high; ++r)
+      if (r < me - 1 || r > me + 1) add(i, r, take_place_of(count + r));
+  }
+  PBF_HD void add(int i, int rank, int place) const {
+    if (place < room) list[std::int64_t(rank) * room + place] = i;
   }
 };
 
-/// Counts the rows that a rank beyond the adjacent ones needs.
-template <class Real>
-struct FarRowsPass {
-  RanksOfRow<Real> ranks;
-  int me;
-  int* count;
-  PBF_HD void operator()(int i) const {
-    const auto span = ranks(i);
-    if (span.low < me - 1 || span.high > me + 1) take_place(count);
+/// The fields of rows in a message: all of a row, then those of the next.
+struct RowFields {
+  static constexpr int most = 16;
+  std::uint32_t* rows[most] = {};
+  int begin[most + 1] = {};  ///< words of 4 bytes, of a row
+  int fields = 0;
+
+  PBF_HD int words() const { return begin[fields]; }
+  /// A word of row i. word: of all fields.
+  PBF_HD std::uint32_t& at(std::int64_t i, int word) const {
+    int f = 0;
+    while (word >= begin[f + 1]) ++f;
+    return rows[f][i * (begin[f + 1] - begin[f]) + word - begin[f]];
   }
 };
-
-/// Copies listed rows of a field, as words of 4 bytes.
+/// Copies listed rows to a message; for each of its words.
 struct PackRowsPass {
-  const std::uint32_t* from;
+  RowFields fields;
   const int* list;
-  int words;  ///< of a row
   std::uint32_t* to;
   PBF_HD void operator()(int k) const {
-    to[k] = from[std::int64_t(list[k / words]) * words + k % words];
+    const int words = fields.words();
+    to[k] = fields.at(list[k / words], k % words);
+  }
+};
+/// Copies the rows of a message to row `first` and those behind it; for each of its words.
+struct UnpackRowsPass {
+  RowFields fields;
+  const std::uint32_t* from;
+  int first;
+  PBF_HD void operator()(int k) const {
+    const int words = fields.words();
+    fields.at(first + k / words, k % words) = from[k];
   }
 };
 
-/// Rows that do not belong here from the next sort on get a negative id: those of other ranks, and
-/// own ones that leave.
+/// Rows that do not belong here from the next sort on get a negative id: of the listed ones, those
+/// that leave. A row may be in several lists.
 template <class Real>
-struct LeaveRowsPass {
+struct LeaveListedPass {
   RanksOfRow<Real> ranks;
-  int me, first, last;  ///< own rows
+  int me;
+  const int* list;
   int* id;
-  PBF_HD void operator()(int i) const {
-    if (i < first || i >= last || !ranks(i).has(me)) id[i] = -1 - id[i];
+  PBF_HD void operator()(int k) const {
+    const int i = list[k];
+    if (id[i] >= 0 && !ranks(i).has(me)) id[i] = -1 - id[i];
   }
+};
+/// The rows of other ranks.
+struct LeaveGhostsPass {
+  int* id;
+  PBF_HD void operator()(int i) const { id[i] = -1 - id[i]; }
 };
 
 template <class Real>

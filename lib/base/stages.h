@@ -40,7 +40,7 @@ inline constexpr Stage kStages[] = {{"init", StageGroup::init, false, "#000000"}
                                     {"xsph", StageGroup::move, true, "#CC79A7"},
                                     {"vorticity", StageGroup::move, true, "#7A3E9D"},
                                     {"hyperviscosity", StageGroup::move, true, "#B387C9"},
-                                    {"exchange", StageGroup::exchange, false, "#7F4F24"},
+                                    {"exchange", StageGroup::exchange, true, "#7F4F24"},
                                     {"measure", StageGroup::output, false, "#B0B0B0"},
                                     {"guard", StageGroup::output, false, "#C4B08B"},
                                     {"download", StageGroup::output, false, "#8A8A8A"},

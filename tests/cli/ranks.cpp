@@ -76,7 +76,7 @@ TEST_CASE("on several ranks an error is told once, and ends them with its code")
   CHECK(count(many.err, "start at most 21 ranks") == 1);
   const Outcome plan = on_ranks(2, {"plan", scene}, folder);
   CHECK(plan.code == 2);
-  CHECK(count(plan.err, "only run and batch --only work on several ranks") == 1);
+  CHECK(count(plan.err, "only run, bench and batch --only work on several ranks") == 1);
 }
 
 TEST_CASE("a rank that hangs is named, and ends the others with 4") {

@@ -15,8 +15,13 @@ class CpuRows {
   void connect(Communicator& ranks) { ranks_ = &ranks; }
   /// Sends and receives memory; several pieces between two ranks are one message.
   void exchange(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
+    if (single(out, in)) return ranks_->exchange(out, in);
     const auto take = [&](const char* from, std::size_t bytes, char* to) { copy(from, to, bytes); };
     exchange_joined(*ranks_, out, in, take, take);
+  }
+  /// The same, of rows at the cuts.
+  void exchange_edges(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
+    exchange(out, in);
   }
   void clear(char* at, std::size_t bytes) { std::memset(at, 0, bytes); }
   /// The same for memory of which much may stay unused: it gives pages back to the system, which
@@ -29,6 +34,8 @@ class CpuRows {
   void move_down(char* begin, std::size_t by, std::size_t bytes) {
     std::memmove(begin, begin + by, bytes);
   }
+  std::vector<int> values(const int* from, int n) { return {from, from + n}; }
+  /// Those at some places.
   template <std::size_t n>
   std::array<int, n> values(const int* from, const std::array<int, n>& at) {
     std::array<int, n> out;

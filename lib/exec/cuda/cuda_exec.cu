@@ -27,10 +27,12 @@ void DeviceLists::allocate(int n) {
   overflow_of_.resize(std::size_t(n));
 }
 
-bool DeviceLists::grow(int n, cudaStream_t stream) {
+void DeviceLists::ask_state(cudaStream_t stream) {
   PBF_CUDA_CHECK(cudaMemcpyAsync(state_host_.data(), state_.data(), sizeof(ListState),
                                  cudaMemcpyDeviceToHost, stream));
-  PBF_CUDA_CHECK(cudaStreamSynchronize(stream));
+}
+
+bool DeviceLists::grow(int n, cudaStream_t stream) {
   const ListState& short_of = *state_host_.data();
   if (short_of.wanted == 0 && short_of.longest == 0) return false;
   capacity_ = larger_list_capacity(capacity_, std::max(short_of.used, short_of.wanted),
@@ -57,6 +59,7 @@ CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
 }
 
 CudaExec::~CudaExec() {
+  link_.reset();  // after an error the stream may wait for ranks that are gone
   if (launcher_.stream) cudaStreamSynchronize(launcher_.stream);
   recorded_.drop();
   for (cudaEvent_t e : events_) cudaEventDestroy(e);
@@ -76,7 +79,7 @@ void CudaExec::mark(const char* stage) {
     events_.emplace_back();
     PBF_CUDA_CHECK(cudaEventCreate(&events_.back()));
   }
-  PBF_CUDA_CHECK(cudaEventRecord(events_[stages_.size()], launcher_.stream));
+  PBF_CUDA_CHECK(cudaEventRecord(events_[stages_.size()], launcher_.ready()));
   stages_.push_back(stage);
 }
 
@@ -94,7 +97,7 @@ void CudaExec::scan(int n, int* start) {
   // The count behind the last bin is 0, so the scan ends with the number of particles.
   with_scratch(scan_, [&](void* scratch, std::size_t& bytes) {
     return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data(), start, n,
-                                         launcher_.stream);
+                                         launcher_.ready());
   });
 }
 
@@ -106,7 +109,7 @@ void CudaExec::rank(int n, const int* id, int* place) {
   items(n, NumberPass{rows.data()});
   with_scratch(scratch, [&](void* memory, std::size_t& bytes) {
     return cub::DeviceRadixSort::SortPairs(memory, bytes, id, sorted.data(), rows.data(),
-                                           by_id.data(), n, 0, 31, launcher_.stream);
+                                           by_id.data(), n, 0, 31, launcher_.ready());
   });
   items(n, InversePass{by_id.data(), place});
   synchronize();
@@ -114,6 +117,7 @@ void CudaExec::rank(int n, const int* id, int* place) {
 
 void CudaExec::connect(Communicator& ranks) {
   link_ = make_device_link(ranks);
+  if (link_->in_stream()) edges_ = std::make_unique<EdgeStream>();
   driver_ += ", " + link_->name();
 }
 
@@ -185,17 +189,28 @@ bool CudaExec::asked_to_repeat() {
 }
 
 bool CudaExec::grow_lists(int n) {
-  const bool grown = lists_.grow(n, launcher_.stream);
+  lists_.ask_state(launcher_.ready());
+  synchronize();
+  const bool grown = lists_.grow(n, launcher_.ready());
   if (grown) forget_recorded();  // it holds the old addresses
   return grown;
 }
 
+double CudaExec::hidden_exchange() const {
+  if (beside_.mean() == 0) return 0;
+  const auto& entries = clock_.entries();
+  const auto exchange = std::ranges::find(entries, "exchange", &StageTime::name);
+  if (exchange == entries.end()) return 0;
+  const double of_update = exchange->seconds / (double(kSampleEvery) * stage_samples_);
+  return std::clamp((apart_.mean() - beside_.mean()) / of_update, 0.0, 1.0);
+}
+
 std::vector<StageTime> CudaExec::stages(double seconds) const {
+  const double shown = 1 - hidden_exchange();
   double sampled = 0;
-  for (const auto& e : clock_.entries()) sampled += e.seconds;
-  std::vector<StageTime> out;
-  for (const auto& e : clock_.entries())
-    out.push_back({e.name, e.seconds * (seconds / sampled), e.calls});
+  std::vector<StageTime> out = clock_.entries();
+  for (StageTime& e : out) sampled += e.seconds *= e.name == "exchange" ? shown : 1;
+  for (StageTime& e : out) e.seconds *= seconds / sampled;
   return out;
 }
 
@@ -205,6 +220,7 @@ void CudaExec::describe(SolverInfo& info) const {
   info.driver = driver_;
   info.launches = recorded_.launches();
   info.recordings = recorded_.recordings();
+  info.hidden_exchange = hidden_exchange();
 }
 
 }  // namespace pbf::PBF_VARIANT

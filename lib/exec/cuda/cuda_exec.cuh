@@ -16,6 +16,7 @@
 #include "lib/exec/cuda/repeat.cuh"
 #include "lib/exec/cuda/shared_pass.cuh"
 #include "lib/exec/cuda/sort_kernels.cuh"
+#include "lib/exec/cuda/timed_updates.cuh"
 #include "lib/solver/executor.h"
 
 namespace pbf::PBF_VARIANT {
@@ -46,9 +47,12 @@ class CudaExec : public CudaSums {
 
   template <class Out, class Write>
   void start_copy(const std::vector<CopyTarget>& to, const Write& write) {
-    copy_.start<Out>(to, write, launcher_.stream);
+    copy_.start<Out>(to, write, launcher_);
   }
-  void finish_copy(const std::vector<CopyTarget>& to) { copy_.finish(to); }
+  void finish_copy(const std::vector<CopyTarget>& to) {
+    before_waiting();
+    copy_.finish(to);
+  }
 
   /// Replays recorded updates. From time to time one update runs unrecorded and is timed stage by
   /// stage, as a sample for the others.
@@ -126,7 +130,7 @@ class CudaExec : public CudaSums {
                     unsigned long long* repeats, const Body& body) {
     if (repeat_.size() == 0) {
       repeat_.resize(1);
-      PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), launcher_.stream));
+      PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), launcher_.ready()));
     }
     Repetition r{repeat_.data(), repeats, tolerance, unsigned(times), true, false, {}};
     const auto decide = [&] {
@@ -175,7 +179,7 @@ class CudaExec : public CudaSums {
     }
     if (counts_.size() != std::size_t(bins) + 1) {
       counts_.resize(std::size_t(bins) + 1);
-      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), launcher_.stream));
+      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), launcher_.ready()));
     }
     items_or_pairs(n, CountPass<leave, First>{first, counts_.data(), order, id, bins});
     if constexpr (leaves_rows) {
@@ -205,12 +209,12 @@ class CudaExec : public CudaSums {
   template <class Updates>
   void repeat_unrecorded(int updates, Updates& u) {
     for (; updates > 0; --updates, --since_profile_) {
-      profiling_ = since_profile_ <= 0;
-      u.step(1);
-      if (!profiling_) continue;
-      book(64);
-      profiling_ = false;
-      since_profile_ = 64;
+      if (since_profile_ > 0) {
+        u.step(1);
+        continue;
+      }
+      since_profile_ = kSampleEvery;
+      sample(u);
     }
   }
 
@@ -220,6 +224,7 @@ class CudaExec : public CudaSums {
   }
 
  private:
+  static constexpr int kSampleEvery = 64;  ///< updates of several ranks
   template <class Rows, class Pass>
   void items_or_pairs(const Rows& n, const Pass& pass) {
     if constexpr (PairPass<Pass>)
@@ -239,6 +244,26 @@ class CudaExec : public CudaSums {
     }
     return false;
   }
+  /// An update for stage times, or one of two for their sum: without exchanges beside passes, and
+  /// with them.
+  template <class Updates>
+  void sample(Updates& u) {
+    const int kind = edges_ ? samples_ % 3 : 0;
+    auto edges = kind < 2 ? std::move(edges_) : nullptr;
+    if (kind == 0) {
+      ++stage_samples_;
+      profiling_ = true;
+      u.step(1);
+      book(kSampleEvery);
+      profiling_ = false;
+    } else {
+      (kind == 1 ? apart_ : beside_).add(launcher_, [&] { u.step(1); });
+    }
+    if (edges) edges_ = std::move(edges);
+    ++samples_;
+  }
+  /// The share of the stage exchange that runs beside other stages.
+  double hidden_exchange() const;
   /// Waits for the marks since begin() and books their times, multiplied by `scale`.
   void book(double scale);
   /// Makes a condition in the graph that is being captured; false if none is.
@@ -258,6 +283,8 @@ class CudaExec : public CudaSums {
   RecordedUpdates recorded_;
   HostCopy copy_;
   StageClock clock_;
+  TimedUpdates apart_, beside_;
+  int samples_ = 0, stage_samples_ = 0;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
   DeviceBuffer<int> counts_, slot_;

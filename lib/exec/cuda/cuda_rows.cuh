@@ -9,48 +9,88 @@
 
 #include "lib/exec/cuda/device_buffer.h"
 #include "lib/exec/cuda/device_link.h"
-#include "lib/exec/cuda/kernel_start.cuh"
+#include "lib/exec/cuda/edge_stream.cuh"
+#include "lib/exec/cuda/kernels.cuh"
 
 namespace pbf::PBF_VARIANT {
 
+/// Single values from different places of an array.
+template <std::size_t n>
+struct ReadIntsPass {
+  const int* from;
+  std::array<int, n> at;
+  int* to;
+  PBF_HD void operator()(int) const {
+    for (std::size_t k = 0; k < n; ++k) to[k] = from[at[k]];
+  }
+};
+
 class CudaRows {
  public:
-  void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(launcher_.stream)); }
+  /// Waits for the stream. Meanwhile a rank answers others, and finds those that hang.
+  void synchronize() {
+    const cudaStream_t stream = launcher_.ready();
+    link_ ? link_->wait(stream) : PBF_CUDA_CHECK(cudaStreamSynchronize(stream));
+  }
+  /// To be called before the host waits for the stream in another way, as copies from and to memory
+  /// that is not pinned do.
+  void before_waiting() {
+    if (link_) synchronize();
+  }
   template <class T>
   void to_device(const T* host, std::size_t n, T* to) {
+    before_waiting();
     PBF_CUDA_CHECK(
-        cudaMemcpyAsync(to, host, n * sizeof(T), cudaMemcpyHostToDevice, launcher_.stream));
+        cudaMemcpyAsync(to, host, n * sizeof(T), cudaMemcpyHostToDevice, launcher_.ready()));
     synchronize();
   }
   template <class T>
   void to_host(const T* from, std::size_t n, T* host) {
+    before_waiting();
     PBF_CUDA_CHECK(
-        cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, launcher_.stream));
+        cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, launcher_.ready()));
     synchronize();
   }
 
   // See CpuRows.
 
   void exchange(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
-    link_->exchange(out, in, launcher_.stream);
+    link_->exchange(out, in, launcher_.ready());
     launcher_.alone = true;  // kernels of others end without what wait_for_previous() waits for
   }
+  /// Of rows at the cuts: beside the passes of other rows, if the device exchanges on its own.
+  void exchange_edges(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
+    if (!edges_) return exchange(out, in);
+    edges_->exchange(launcher_, [&](cudaStream_t stream) { link_->exchange(out, in, stream); });
+  }
+  bool has_edges() const { return edges_ != nullptr; }
+  /// Launches edges() for the rows at the cuts, and inner() for the others.
+  template <class Edges, class Inner>
+  void beside(const Edges& edges, const Inner& inner) {
+    edges_->beside(launcher_, edges, inner);
+  }
   void clear(char* at, std::size_t bytes) {
-    PBF_CUDA_CHECK(cudaMemsetAsync(at, 0, bytes, launcher_.stream));
+    PBF_CUDA_CHECK(cudaMemsetAsync(at, 0, bytes, launcher_.ready()));
     launcher_.alone = true;
   }
   void copy(const char* from, char* to, std::size_t bytes) {
     if (bytes == 0) return;
-    PBF_CUDA_CHECK(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, launcher_.stream));
+    PBF_CUDA_CHECK(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, launcher_.ready()));
     launcher_.alone = true;
   }
   void move_down(char* begin, std::size_t by, std::size_t bytes);
+  std::vector<int> values(const int* from, int n) {
+    make_room(std::size_t(n));
+    PBF_CUDA_CHECK(cudaMemcpyAsync(values_.data(), from, std::size_t(n) * sizeof(int),
+                                   cudaMemcpyDeviceToHost, launcher_.ready()));
+    synchronize();
+    return {values_.data(), values_.data() + n};
+  }
   template <std::size_t n>
   std::array<int, n> values(const int* from, const std::array<int, n>& at) {
-    values_.resize(n);
-    for (std::size_t k = 0; k < n; ++k)
-      PBF_CUDA_CHECK(cudaMemcpyAsync(values_.data() + k, from + at[k], sizeof(int),
-                                     cudaMemcpyDeviceToHost, launcher_.stream));
+    make_room(n);
+    launcher_.start(item_kernel<int, ReadIntsPass<n>>, 1, kBlock, 0, 1,
+                    ReadIntsPass<n>{from, at, values_.data()});
     synchronize();
     std::array<int, n> out;
     std::copy_n(values_.data(), n, out.begin());
@@ -60,8 +100,12 @@ class CudaRows {
  protected:
   Launcher launcher_;
   std::unique_ptr<DeviceLink> link_;
+  std::unique_ptr<EdgeStream> edges_;  ///< null: exchanges are in the order of the launches
 
  private:
+  void make_room(std::size_t n) {
+    if (values_.size() < n) values_.resize(n);
+  }
   PinnedBuffer<int> values_;
 };
 

@@ -24,17 +24,17 @@ class CudaSums : public CudaRows {
   template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
     if (n == 0) return {};
-    measure_.make(std::max(rows_, total_), launcher_.stream);
+    measure_.make(std::max(rows_, total_), launcher_.ready());
     const int threads = kBlock * reduce_blocks(n);
     launch(reduce_kernel<CountsOf<Pass>>, threads, kBlock, 0, n, CountsOf<Pass>{pass},
            measure_.counts());
     launch(reduce_kernel<TermsOf<Pass>>, threads, kBlock, 0, n,
            TermsOf<Pass>{pass, measure_.counts().total, {}}, measure_.terms());
-    return measure_.result(launcher_.stream);
+    return measure_.result(launcher_.ready());
   }
   template <ReducePass Pass, class Join>
   MeasureSums reduce(int n, const Pass& pass, const Join& join) {
-    measure_.make(std::max(rows_, total_), launcher_.stream);
+    measure_.make(std::max(rows_, total_), launcher_.ready());
     const int threads = kBlock * reduce_blocks(n);
     const auto sum_of_rows = [&](const auto& term, const auto& reduction, auto& sum) {
       if (n == 0) return;
@@ -54,7 +54,8 @@ class CudaSums : public CudaRows {
   /// See CpuExec.
   template <class Pass>
   const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
-    return bin_counts_.of(n, bins, pass, launcher_.stream);
+    before_waiting();
+    return bin_counts_.of(n, bins, pass, launcher_.ready());
   }
 
   template <class Pass>
@@ -64,7 +65,7 @@ class CudaSums : public CudaRows {
     if (n == 0) return sum;
     sum_.resize(1);
     with_scratch(scratch_, [&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceReduce::Sum(scratch, bytes, term, sum_.data(), n, launcher_.stream);
+      return cub::DeviceReduce::Sum(scratch, bytes, term, sum_.data(), n, launcher_.ready());
     });
     to_host(sum_.data(), 1, &sum);
     return sum;

@@ -18,6 +18,8 @@ class HostLink final : public DeviceLink {
  public:
   explicit HostLink(Communicator& ranks) : ranks_(ranks) {}
   std::string name() const override { return "through the host"; }
+  bool in_stream() const override { return false; }
+  void wait(cudaStream_t stream) override { PBF_CUDA_CHECK(cudaStreamSynchronize(stream)); }
   void exchange(const std::vector<Outgoing>& out, const std::vector<Incoming>& in,
                 cudaStream_t stream) override {
     const auto copy = [&](cudaMemcpyKind kind) {
@@ -48,6 +50,14 @@ class NcclLink final : public DeviceLink {
   ~NcclLink() override {
     // After an error other ranks may be gone, and an orderly end would wait for them.
     if (comm_) std::uncaught_exceptions() > 0 ? nccl_.abort(comm_) : nccl_.destroy(comm_);
+  }
+  bool in_stream() const override { return true; }
+  void wait(cudaStream_t stream) override {
+    ranks_.wait_until([stream] {
+      const cudaError_t now = cudaStreamQuery(stream);
+      if (now != cudaErrorNotReady) PBF_CUDA_CHECK(now);
+      return now == cudaSuccess;
+    });
   }
   std::string name() const override {
     int v = 0;

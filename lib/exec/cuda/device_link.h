@@ -15,9 +15,13 @@ class DeviceLink {
  public:
   virtual ~DeviceLink() = default;
   virtual std::string name() const = 0;  ///< "NCCL 2.28.3"
+  /// Whether exchange() returns before the rows have arrived, which are then in the stream.
+  virtual bool in_stream() const = 0;
   /// Behind what the stream has been given; pieces between two ranks are in the same order on both.
   virtual void exchange(const std::vector<Outgoing>& out, const std::vector<Incoming>& in,
                         cudaStream_t stream) = 0;
+  /// Returns when the stream is done. Throws Error(unavailable) if another rank hangs.
+  virtual void wait(cudaStream_t stream) = 0;
 };
 
 /// To be called on all ranks. NCCL, if every rank has the library and a device of its own; through

@@ -27,8 +27,10 @@ class DeviceLists {
     return {words_.data(),    overflows_.data(), count_.data(),      overflow_of_.data(),
             list_stride(far), capacity_.first,   capacity_.overflow, far};
   }
+  /// To be called before grow(), which needs the stream to be done.
+  void ask_state(cudaStream_t stream);
   /// Whether lists of at most n particles had too little memory since the last call; they then have
-  /// more. Waits for the device.
+  /// more.
   bool grow(int n, cudaStream_t stream);
   void clear_state(cudaStream_t stream) {
     PBF_CUDA_CHECK(cudaMemsetAsync(state_.data(), 0, sizeof(ListState), stream));

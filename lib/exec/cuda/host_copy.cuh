@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lib/exec/cuda/device_buffer.h"
+#include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/solver/executor.h"
 
 namespace pbf::PBF_VARIANT {
@@ -21,9 +22,9 @@ class HostCopy {
     cudaStreamDestroy(stream_);
   }
 
-  /// write(pointers) fills the staging buffer, on `stream`.
+  /// write(pointers) fills the staging buffer, by launches.
   template <class Out, class Write>
-  void start(const std::vector<CopyTarget>& to, const Write& write, cudaStream_t stream) {
+  void start(const std::vector<CopyTarget>& to, const Write& write, Launcher& launcher) {
     std::size_t bytes = 0;
     for (const CopyTarget& t : to) bytes += t.bytes;
     if (!stream_) {
@@ -37,7 +38,7 @@ class HostCopy {
       at += t.bytes;
     }
     write(rows);
-    PBF_CUDA_CHECK(cudaEventRecord(written_, stream));
+    PBF_CUDA_CHECK(cudaEventRecord(written_, launcher.ready()));
     PBF_CUDA_CHECK(cudaStreamWaitEvent(stream_, written_, 0));
     PBF_CUDA_CHECK(
         cudaMemcpyAsync(host_.data(), staging_.data(), bytes, cudaMemcpyDeviceToHost, stream_));

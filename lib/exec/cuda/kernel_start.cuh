@@ -40,8 +40,21 @@ __device__ __forceinline__ void wait_for_previous() {
 /// the device has it, which hides most of the time between two kernels.
 struct Launcher {
   cudaStream_t stream = nullptr;
-  bool overlap = false;  ///< the device has programmatic dependent launch
-  bool alone = false;    ///< the next launch does without
+  bool overlap = false;           ///< the device has programmatic dependent launch
+  bool alone = false;             ///< the next launch does without
+  cudaEvent_t awaited = nullptr;  ///< what is next launched, other than by EdgeStream, waits for it
+  bool split = false;             ///< nothing else was launched since EdgeStream::beside()
+
+  /// The stream for anything that needs all that was launched before.
+  cudaStream_t ready() {
+    split = false;
+    if (awaited) {
+      PBF_CUDA_CHECK(cudaStreamWaitEvent(stream, awaited, 0));
+      awaited = nullptr;
+      alone = true;
+    }
+    return stream;
+  }
 
   /// Enough blocks of `block` threads for `threads`.
   template <class... P, class... A>
@@ -51,7 +64,7 @@ struct Launcher {
     config.gridDim = dim3(unsigned((std::int64_t(threads) + block - 1) / block));
     config.blockDim = dim3(unsigned(block));
     config.dynamicSmemBytes = shared;
-    config.stream = stream;
+    config.stream = ready();
     cudaLaunchAttribute dependent{};
     dependent.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     dependent.val.programmaticStreamSerializationAllowed = 1;

@@ -1,8 +1,13 @@
 #include "lib/exec/ranks/communicator.h"
 
 #include <array>
+#include <thread>
 
 namespace pbf::exec_module {
+
+void Communicator::wait_until(const std::function<bool()>& done) {
+  while (!done()) std::this_thread::yield();
+}
 
 std::vector<char> scatter(Communicator& ranks, const std::function<std::vector<char>(int)>& part) {
   std::vector<char> bytes;

@@ -54,6 +54,9 @@ class Communicator {
   virtual void gather(std::vector<char> mine, const TakePart& take) = 0;
   /// The bytes of rank 0 on all ranks. A rank that waits for it leaves its core to others.
   virtual void broadcast(std::vector<char>& bytes) = 0;
+  /// Returns when done() is true, which is asked again and again. done: depends on other ranks, but
+  /// not through this object.
+  virtual void wait_until(const std::function<bool()>& done);
   /// Tells the other ranks that this one has failed, so that none waits for it. code: with which
   /// processes end.
   virtual void fail(const std::string& why, int code) noexcept = 0;

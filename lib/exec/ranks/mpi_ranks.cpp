@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 
 #include "lib/base/error.h"
 #include "lib/base/shipped_file.h"
@@ -66,6 +67,23 @@ class Mpi final : public MpiRanks {
     check(mpi_.broadcast(&n, sizeof n, 1), "MPI_Ibcast");
     bytes.resize(n);
     check(mpi_.broadcast(bytes.data(), n, 0), "MPI_Ibcast");
+  }
+  void wait_until(const std::function<bool()>& done) override {
+    struct Asked {
+      const std::function<bool()>& done;
+      std::exception_ptr thrown;
+    } asked{done, nullptr};
+    const auto ask = [](void* of) -> int {  // nothing may be thrown through the module
+      Asked& a = *static_cast<Asked*>(of);
+      try {
+        return a.done();
+      } catch (...) {
+        a.thrown = std::current_exception();
+        return 1;
+      }
+    };
+    check(mpi_.wait_until(ask, &asked), "MPI_Iprobe");
+    if (asked.thrown) std::rethrow_exception(asked.thrown);
   }
   void fail(const std::string& why, int code) noexcept override {
     failed_ = true;

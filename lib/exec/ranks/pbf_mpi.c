@@ -99,15 +99,20 @@ static int ask_others(void) {
   }
   return MPI_SUCCESS;
 }
-static int all_done(int* there) { return MPI_Testall(used, requests, there, MPI_STATUSES_IGNORE); }
-/* After the deadline: waits for answers for a while, also for the requests. */
-static int find_silent(int* there) {
+/* What a rank waits for: sets *there when it is there. */
+typedef int awaited(void* of, int* there);
+static int all_done(void* of, int* there) {
+  (void)of;
+  return MPI_Testall(used, requests, there, MPI_STATUSES_IGNORE);
+}
+/* After the deadline: waits for answers for a while, also for what is awaited. */
+static int find_silent(awaited* test, void* of, int* there) {
   const double begun = seconds(), most = deadline < 10 ? deadline : 10;
   const struct timespec nap = {0, 100000}; /* 0.1 ms */
   int silent = 0, reporter = 0;
   TRY(ask_others());
   while (seconds() - begun < most) {
-    TRY(all_done(there));
+    TRY(test(of, there));
     if (*there) return MPI_SUCCESS;
     TRY(answer_others());
     TRY(hear_answers());
@@ -126,27 +131,42 @@ static int find_silent(int* there) {
   }
   return PBF_MPI_SILENT;
 }
-/* For all requests. patient: leaves the core to others, and waits ten times as long: rank 0 may be
-   writing files. */
-static int wait_for_all(int patient) {
+/* patient: leaves the core to others, and waits ten times as long: rank 0 may be writing files. */
+static int wait_for(awaited* test, void* of, int patient) {
   const struct timespec nap = {0, 100000}; /* 0.1 ms */
   double begun = 0;
   for (long tries = 0;; ++tries) {
     int there = 0;
-    TRY(all_done(&there));
-    if (there) break;
+    TRY(test(of, &there));
+    if (there) return MPI_SUCCESS;
     if (tries < 1000) continue;
     if (tries == 1000) begun = seconds();
     patient ? (void)nanosleep(&nap, NULL) : (void)sched_yield();
     if (tries % 64 != 0) continue;
     TRY(answer_others());
     if (deadline <= 0 || seconds() - begun < deadline * (patient ? 10 : 1)) continue;
-    TRY(find_silent(&there));
-    if (there) break;
+    TRY(find_silent(test, of, &there));
+    if (there) return MPI_SUCCESS;
     begun = seconds();
   }
+}
+static int wait_for_all(int patient) { /* requests */
+  TRY(wait_for(all_done, NULL, patient));
   used = 0;
   return MPI_SUCCESS;
+}
+struct question_to {
+  int (*done)(void* of);
+  void* of;
+};
+static int is_done(void* of, int* there) {
+  const struct question_to* q = of;
+  *there = q->done(q->of);
+  return MPI_SUCCESS;
+}
+static int wait_until(int (*done)(void* of), void* of) {
+  struct question_to q = {done, of};
+  return wait_for(is_done, &q, 0);
 }
 static int start(double most_wait, int* rank, int* size) {
   int given = 0;
@@ -215,7 +235,8 @@ static void abort_all(int code) { MPI_Abort(MPI_COMM_WORLD, code); }
 static int finish(void) { return MPI_Finalize(); }
 
 const struct pbf_mpi* pbf_mpi_table(void) {
-  static const struct pbf_mpi table = {PBF_MPI_TABLE, start,     describe, exchange,  all_gather,
-                                       sum,           broadcast, trouble,  abort_all, finish};
+  static const struct pbf_mpi table = {PBF_MPI_TABLE, start, describe,  exchange,
+                                       all_gather,    sum,   broadcast, wait_until,
+                                       trouble,       abort_all, finish};
   return &table;
 }

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { PBF_MPI_TABLE = 3 }; /* changes with the table */
+enum { PBF_MPI_TABLE = 4 }; /* changes with the table */
 enum { PBF_MPI_SILENT = -1 };
 
 struct pbf_mpi_message {
@@ -28,6 +28,8 @@ struct pbf_mpi {
   int (*sum)(int64_t* values, size_t n);
   /* patient: leaves the core to others while it waits. */
   int (*broadcast)(void* data, size_t bytes, int patient);
+  /* Returns when done(of) is not 0. */
+  int (*wait_until)(int (*done)(void* of), void* of);
   const char* (*trouble)(void); /* after PBF_MPI_SILENT: which rank */
   void (*abort)(int code);
   int (*finish)(void);

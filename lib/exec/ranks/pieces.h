@@ -2,11 +2,20 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "lib/exec/ranks/communicator.h"
 
 namespace pbf::exec_module {
+
+/// Whether at most one piece goes to or comes from each rank.
+inline bool single(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
+  std::set<int> to, from;
+  for (const Outgoing& o : out) to.insert(o.to);
+  for (const Incoming& i : in) from.insert(i.from);
+  return to.size() == out.size() && from.size() == in.size();
+}
 
 /// Pieces are in the same order on both ranks. read(from, bytes, to) copies them to memory of the
 /// host, write(from, bytes, to) back.

@@ -70,18 +70,20 @@ class RankExec : public Base {
   using Base::items, Base::pairs, Base::repeat_while;
   template <ItemPass Pass>
   void items(const Rows& rows, const Pass& pass) {
-    Base::items(RowRange(rows), pass);
+    over(rows, [&](const RowRange& r) { Base::items(r, pass); });
   }
   template <PairPass Pass>
   void pairs(const Rows& rows, const Pass& pass) {
-    Base::pairs(RowRange(rows), pass);
+    over(rows, [&](const RowRange& r) { Base::pairs(r, pass); });
   }
   /// Rows near solids are listed with those of ghosts.
   template <ItemPass Pass>
   void listed(const int* count, int most, const Pass& pass) {
     if constexpr (requires { pass.row(0); })
       if (rows_)
-        return Base::listed(count, most, OwnOf<Pass>{pass, {rows_->first(), rows_->last()}});
+        return over({rows_->first(), rows_->last()}, [&](const RowRange& r) {
+          Base::listed(count, most, OwnOf<Pass>{pass, r});
+        });
     Base::listed(count, most, pass);
   }
   template <ItemPass Pass>
@@ -107,7 +109,7 @@ class RankExec : public Base {
     if constexpr (requires { pass.step_counts; }) {  // a rank has its own, whatever its rows
       StepCounts mine;
       this->to_host(pass.step_counts, 1, &mine);
-      steps = of_steps(mine);
+      steps = counts_of(mine);
       of_rows.step_counts = no_steps();
     }
     const int first = rows_->first(), own = rows_->last() - first;
@@ -198,6 +200,19 @@ class RankExec : public Base {
   }
 
  private:
+  /// Calls launch(range) for own rows: at once, or for those at the cuts beside the others.
+  template <class Launch>
+  void over(const RowRange& own, const Launch& launch) {
+    if constexpr (requires { this->has_edges(); })
+      if (rows_ && this->has_edges() && rows_->overlap()) {
+        const auto [low, inner, high] = rows_->parts();
+        const auto some = [&](const RowRange& r) {
+          if (r.first < r.last) launch(r);
+        };
+        return this->beside([&] { some(low), some(high); }, [&] { some(inner); });
+      }
+    launch(own);
+  }
   /// Steps that count nothing, in the memory of the executor.
   const StepCounts* no_steps() {
     if (no_steps_.size() == 0) {
@@ -206,12 +221,6 @@ class RankExec : public Base {
       this->to_device(&none, 1, no_steps_.data());
     }
     return no_steps_.data();
-  }
-  static MeasureCounts of_steps(const StepCounts& c) {
-    MeasureCounts m;
-    m.fast = std::int64_t(c.fast), m.repeats = std::int64_t(c.repeats);
-    m.unresolved = std::int64_t(c.unresolved), m.way_squared = c.way_squared;
-    return m;
   }
   template <class Sum>
   Sum over_ranks(const Sum& mine) {

@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 #include <numeric>
+#include <set>
 #include <vector>
 
 #include "kernels/pass_rank_rows.h"
@@ -30,6 +31,17 @@ class RankRows {
   int all() const { return all_; }              ///< with ghosts
   int particles() const { return particles_; }  ///< of all ranks
   const Slabs& slabs() const { return slabs_; }
+  /// Own rows: those at the cuts below and above, which other ranks have as ghosts and which have
+  /// ghosts as neighbors, and those between.
+  struct Parts {
+    RowRange low, inner, high;
+  };
+  Parts parts() const {
+    return {{first_, low_end_}, {low_end_, high_begin_}, {high_begin_, last_}};
+  }
+  /// Whether rows at the cuts are worth launches of their own in the pass of the last before(): an
+  /// exchange comes next to it, and most rows are not at a cut.
+  bool overlap() const { return overlap_ && high_begin_ - low_end_ > (last_ - first_) / 2; }
   /// To be called between the launches of a pass that sums over particles.
   void add_within() const { add_within_(); }
 
@@ -42,13 +54,19 @@ class RankRows {
       ++in_layer[std::size_t(cell_coordinate(x.z, p.inv_cell, p.cells_z))];
     ranks_.sum(in_layer);
     slabs_ = Slabs(in_layer, ranks_.size(), layers_per_unit(plan));
+    RankState state;
+    exchanges(plan.program, plan.program.update, state);  // the update before
+    const std::vector<Exchange> all = exchanges(plan.program, plan.program.update, state);
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (all[k].pass && (!all[k].ghosts.empty() || !all[(k + 1) % all.size()].ghosts.empty()))
+        beside_exchange_.insert(all[k].pass);
     particles_ = int(std::accumulate(in_layer.begin(), in_layer.end(), std::int64_t(0)));
-    first_ = 0, last_ = all_ = int(s.id.size());
+    only_own(int(s.id.size()));
   }
   /// Rows 0 ... n - 1 are this rank's, and there are no ghosts.
   template <class C>
   void all_own(C& c, int n) {
-    first_ = 0, last_ = all_ = n;
+    only_own(n);
     sorts_done_ = kBalanceEvery - 1;  // the next sort makes new cuts
     forget_near(c);
   }
@@ -64,7 +82,7 @@ class RankRows {
           const auto bytes = std::size_t(f->bytes(C::precision));
           c.exec.move_down(begin, std::size_t(first_) * bytes, std::size_t(own) * bytes);
         }
-    first_ = 0, last_ = all_ = own;
+    only_own(own);
     c.put(field::row_state, {RowState{own, particles_}});
     return true;
   }
@@ -92,6 +110,7 @@ class RankRows {
     for (const FieldInfo* f : pass.flips) c.flip(*f);  // named as they are after the flips
     if (!e.ghosts.empty()) copy_ghosts(c, e.ghosts);
     for (const FieldInfo* f : pass.flips) c.flip(*f);
+    overlap_ = beside_exchange_.contains(&pass) && last_ - first_ >= kOverlapFrom;
     sorts_ = !e.rows.empty();
     if (sorts_) {
       if (++sorts_done_ % kBalanceEvery == 0) balance(c);
@@ -113,7 +132,11 @@ class RankRows {
  private:
   using Fields = Exchange::Fields;
   static constexpr int kBalanceEvery = 64;  ///< sorts
+  /// Own rows from which a pass beside an exchange takes longer than its additional launches.
+  static constexpr int kOverlapFrom = 200000;
 
+  /// Until the next sort no rows are known to be at a cut.
+  void only_own(int n) { first_ = low_end_ = high_begin_ = 0, last_ = all_ = n; }
   template <class C>
   static std::size_t bytes_in_all(C& c, const FieldInfo& f) {
     return std::size_t(c.rows_of(f)) * std::size_t(f.bytes(C::precision));
@@ -169,6 +192,8 @@ class RankRows {
         c.data(field::bin_start), std::array{low * per_layer, (low + 1) * per_layer,
                                              (high - 1) * per_layer, high * per_layer, bins});
     first_ = at[0], low_end_ = at[1], high_begin_ = at[2], last_ = at[3], all_ = at[4];
+    if (me == 0) low_end_ = first_;
+    if (me == ranks_.size() - 1) high_begin_ = last_;
   }
   template <class C>
   void copy_ghosts(C& c, const Fields& fields) {
@@ -187,7 +212,7 @@ class RankRows {
     };
     with(me - 1, first_, low_end_, 0, first_);
     with(me + 1, high_begin_, last_, last_, all_);
-    c.exec.exchange(out, in);
+    c.exec.exchange_edges(out, in);
   }
 
   Communicator& ranks_;
@@ -195,7 +220,8 @@ class RankRows {
   RowRoutes<Exec> routes_;
   int first_ = 0, last_ = 0, all_ = 0, low_end_ = 0, high_begin_ = 0;  ///< rows
   int particles_ = 0, sorts_done_ = 0;
-  bool sorts_ = false, has_exchanged_ = false;
+  bool sorts_ = false, has_exchanged_ = false, overlap_ = false;
+  std::set<const PassInfo*> beside_exchange_;
   RankState exchanged_;
   std::function<void()> add_within_;
 };

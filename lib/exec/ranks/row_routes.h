@@ -27,150 +27,119 @@ class RowRoutes {
   template <class C>
   int exchange(C& c, const Slabs& slabs, const RowRange& own, int all_rows, const Fields& fields) {
     using Real = typename C::Real;
-    const int me = ranks_.rank(), ranks = ranks_.size();
-    slabs_ = slabs, own_ = own, all_ = all_rows;
-    Selected rows;
-    for (const int r : {me - 1, me + 1})
-      if (r >= 0 && r < ranks) rows.to.push_back(r);
-    select(c, rows);
-    // How many rows come from the adjacent ranks, and whether any rank has some for others.
-    struct Said {
-      int down = 0, up = 0, far = 0;
-    } said;
-    for (std::size_t k = 0; k < rows.to.size(); ++k)
-      (rows.to[k] < me ? said.down : said.up) = rows.count[k];
-    said.far = rows.far;
-    std::vector<Said> all(static_cast<std::size_t>(ranks));
-    const std::vector<char> bytes = ranks_.all_gather(&said, sizeof said);
-    std::memcpy(static_cast<void*>(all.data()), bytes.data(), bytes.size());
-    std::vector<int> coming;
-    if (std::ranges::all_of(all, [](const Said& s) { return s.far == 0; })) {
-      for (const int r : rows.to) {
-        const Said& s = all[std::size_t(r)];
-        coming.push_back(r < me ? s.up : s.down);
-      }
-    } else {
-      rows = {};
-      for (int r = 0; r < ranks; ++r)
-        if (r != me) rows.to.push_back(r);
-      select(c, rows);
-      coming = counts_for_me(rows);
+    const auto ranks = std::size_t(ranks_.size()), me = std::size_t(ranks_.rank());
+    if (owner_of_ != slabs) {
+      const std::vector<int>& owners = slabs.owners();
+      owner_.resize(owners.size());
+      c.exec.to_device(owners.data(), owners.size(), owner_.data());
+      owner_of_ = slabs;
     }
     const RanksOfRow<Real> of{c.p, c.position(), owner_.data()};
-    const std::vector<Outgoing> out = packed(c, fields, rows);
-    c.exec.items(all_, LeaveRowsPass<Real>{of, me, own.first, own.last, c.ids()});
-    append(c, fields, rows.to, coming, out);
-    return all_;
+    const std::vector<int> going = select(c, of, own);
+    std::vector<int> all(ranks * ranks), coming(ranks);
+    const std::vector<char> bytes = ranks_.all_gather(going.data(), ranks * sizeof(int));
+    std::memcpy(all.data(), bytes.data(), bytes.size());
+    for (std::size_t r = 0; r < ranks; ++r) coming[r] = all[r * ranks + me];
+    const RowFields rows = rows_of(c, fields);
+    const std::vector<Outgoing> out = packed(c, rows, going);
+    leave(c, of, own, all_rows, going);
+    return append(c, rows, all_rows, coming, out);
   }
 
  private:
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
-  /// Rows for other ranks: the lists and their lengths, in the order of `to`.
-  struct Selected {
-    std::vector<int> to{}, count{};
-    int far = 0;  ///< rows that go beyond the adjacent ranks
-  };
 
-  std::vector<int> counts_for_me(const Selected& rows) {
-    const auto ranks = std::size_t(ranks_.size()), me = std::size_t(ranks_.rank());
-    std::vector<int> mine(ranks), all(ranks * ranks), coming;
-    for (std::size_t k = 0; k < rows.to.size(); ++k) mine[std::size_t(rows.to[k])] = rows.count[k];
-    const std::vector<char> bytes = ranks_.all_gather(mine.data(), ranks * sizeof(int));
-    std::memcpy(all.data(), bytes.data(), bytes.size());
-    for (const int r : rows.to) coming.push_back(all[std::size_t(r) * ranks + me]);
-    return coming;
-  }
-  /// Makes the lists of own rows for rows.to, with more room where it is needed.
   template <class C>
-  void select(C& c, Selected& rows) {
-    using Real = typename C::Real;
-    if (owner_of_ != slabs_) {
-      const std::vector<int>& owners = slabs_.owners();
-      owner_.resize(owners.size());
-      c.exec.to_device(owners.data(), owners.size(), owner_.data());
-      owner_of_ = slabs_;
+  static RowFields rows_of(C& c, const Fields& fields) {
+    RowFields rows;
+    if (fields.size() > std::size_t(RowFields::most))
+      throw Error(ExitCode::internal, "too many fields go along with particles");
+    for (const FieldInfo* f : fields) {
+      const int k = rows.fields++;
+      rows.rows[k] = reinterpret_cast<std::uint32_t*>(c.bytes_of(*f));
+      rows.begin[k + 1] = rows.begin[k] + f->bytes(C::precision) / 4;
     }
-    const RanksOfRow<Real> of{c.p, c.position(), owner_.data()};
-    const std::size_t lists = rows.to.size();
-    std::vector<int> counts(lists + 1);
+    return rows;
+  }
+  /// Makes the list of own rows for each rank, with more room where it is needed. Returns their
+  /// lengths.
+  template <class C, class Real>
+  std::vector<int> select(C& c, const RanksOfRow<Real>& of, const RowRange& own) {
+    const int ranks = ranks_.size();
+    count_.resize(std::size_t(ranks));
     for (;;) {
-      if (list_.size() < lists * std::size_t(room_)) list_.resize(lists * std::size_t(room_));
-      if (count_.size() < lists + 1) count_.resize(lists + 1);
-      c.exec.clear(reinterpret_cast<char*>(count_.data()), (lists + 1) * sizeof(int));
-      for (std::size_t k = 0; k < lists; ++k)
-        c.exec.items(own_,
-                     SelectRowsPass<Real>{of, rows.to[k], list_.data() + k * std::size_t(room_),
-                                          count_.data() + k, room_});
-      c.exec.items(own_, FarRowsPass<Real>{of, ranks_.rank(), count_.data() + lists});
-      c.exec.to_host(count_.data(), lists + 1, counts.data());
-      const int most = lists ? *std::max_element(counts.begin(), counts.end() - 1) : 0;
-      if (most <= room_) break;
+      list_.resize(std::size_t(ranks) * std::size_t(room_));
+      c.exec.clear(reinterpret_cast<char*>(count_.data()), count_.bytes());
+      c.exec.items(own,
+                   SelectRowsPass<Real>{of, ranks_.rank(), list_.data(), count_.data(), room_});
+      std::vector<int> counts = c.exec.values(count_.data(), ranks);
+      const int most = *std::ranges::max_element(counts);
+      if (most <= room_) return counts;
       room_ = most + most / 4;
     }
-    rows.far = counts.back();
-    counts.pop_back();
-    rows.count = counts;
   }
-  /// The rows of all fields for each rank, a field behind the other.
+  const int* list(std::size_t rank) { return list_.data() + rank * std::size_t(room_); }
+  /// Whether this rank sends a message of so many rows to another: those that it always has
+  /// something for get an empty one, too.
+  bool sends(std::size_t rank, int rows) const {
+    const int to = int(rank), me = ranks_.rank();
+    return rows > 0 || to == me - 1 || to == me + 1;
+  }
   template <class C>
-  std::vector<Outgoing> packed(C& c, const Fields& fields, const Selected& rows) {
-    const auto of_row = std::size_t(row_bytes(fields, C::precision));
-    std::size_t bytes = 0;
-    for (const int n : rows.count) bytes += std::size_t(n) * of_row;
-    reserve(send_, bytes);
+  std::vector<Outgoing> packed(C& c, const RowFields& rows, const std::vector<int>& going) {
+    const int words = rows.words();
+    reserve(send_, words, going);
     std::vector<Outgoing> out;
-    char* to = send_.data();
-    for (std::size_t k = 0; k < rows.to.size(); ++k) {
-      out.push_back({rows.to[k], to, std::size_t(rows.count[k]) * of_row});
-      for (const FieldInfo* f : fields) {
-        const int words = f->bytes(C::precision) / 4;
-        c.exec.items(rows.count[k] * words,
-                     PackRowsPass{reinterpret_cast<const std::uint32_t*>(c.bytes_of(*f)),
-                                  list_.data() + k * std::size_t(room_), words,
-                                  reinterpret_cast<std::uint32_t*>(to)});
-        to += std::size_t(rows.count[k]) * std::size_t(words) * 4;
-      }
+    std::uint32_t* to = send_.data();
+    for (std::size_t r = 0; r < going.size(); ++r) {
+      if (!sends(r, going[r])) continue;
+      const auto all = std::size_t(going[r]) * std::size_t(words);
+      out.push_back({int(r), to, all * sizeof *to});
+      c.exec.items(int(all), PackRowsPass{rows, list(r), to});
+      to += all;
     }
     return out;
   }
-  /// Exchanges the rows and puts those that come behind all others.
+  template <class C, class Real>
+  void leave(C& c, const RanksOfRow<Real>& of, const RowRange& own, int all_rows,
+             const std::vector<int>& going) {
+    for (std::size_t r = 0; r < going.size(); ++r)
+      c.exec.items(going[r], LeaveListedPass<Real>{of, ranks_.rank(), list(r), c.ids()});
+    c.exec.items(RowRange{0, own.first}, LeaveGhostsPass{c.ids()});
+    c.exec.items(RowRange{own.last, all_rows}, LeaveGhostsPass{c.ids()});
+  }
+  /// Exchanges the rows and puts those that come behind all others. Returns the number of all.
   template <class C>
-  void append(C& c, const Fields& fields, const std::vector<int>& from,
-              const std::vector<int>& coming, const std::vector<Outgoing>& out) {
-    const auto of_row = std::size_t(row_bytes(fields, C::precision));
-    const auto more = std::accumulate(coming.begin(), coming.end(), std::int64_t(0));
-    if (all_ + more > c.capacity())
+  int append(C& c, const RowFields& rows, int all_rows, const std::vector<int>& coming,
+             const std::vector<Outgoing>& out) {
+    if (std::accumulate(coming.begin(), coming.end(), std::int64_t(all_rows)) > c.capacity())
       throw Error(ExitCode::unavailable,
                   "too many particles for the memory of a rank; use other numbers of ranks");
-    reserve(receive_, std::size_t(more) * of_row);
+    const int words = rows.words();
+    reserve(receive_, words, coming);
     std::vector<Incoming> in;
-    char* at = receive_.data();
-    for (std::size_t k = 0; k < from.size(); ++k) {
-      in.push_back({from[k], at, std::size_t(coming[k]) * of_row});
-      at += in.back().bytes;
+    std::uint32_t* at = receive_.data();
+    for (std::size_t r = 0; r < coming.size(); ++r) {
+      if (!sends(r, coming[r])) continue;
+      in.push_back({int(r), at, std::size_t(coming[r]) * std::size_t(words) * sizeof *at});
+      at += std::size_t(coming[r]) * std::size_t(words);
     }
     c.exec.exchange(out, in);
-    at = receive_.data();
-    for (const int n : coming) {
-      for (const FieldInfo* f : fields) {
-        const auto bytes = std::size_t(f->bytes(C::precision));
-        c.exec.copy(at, c.bytes_of(*f) + std::size_t(all_) * bytes, std::size_t(n) * bytes);
-        at += std::size_t(n) * bytes;
-      }
-      all_ += n;
-    }
+    const auto came = int(at - receive_.data());
+    c.exec.items(came, UnpackRowsPass{rows, receive_.data(), all_rows});
+    return all_rows + came / words;
   }
-  static void reserve(Buffer<char>& buffer, std::size_t bytes) {
-    if (buffer.size() < bytes) buffer.resize(bytes + bytes / 4);
+  static void reserve(Buffer<std::uint32_t>& buffer, int words, const std::vector<int>& rows) {
+    const auto n = std::accumulate(rows.begin(), rows.end(), std::size_t(0)) * std::size_t(words);
+    if (buffer.size() < n) buffer.resize(n + n / 4);
   }
 
   Communicator& ranks_;
-  Slabs slabs_, owner_of_;
-  RowRange own_{0, 0};
-  int all_ = 0, room_ = 1024;
+  Slabs owner_of_;
+  int room_ = 1024;
   Buffer<int> owner_, list_, count_;
-  Buffer<char> send_, receive_;
+  Buffer<std::uint32_t> send_, receive_;
 };
 
 }  // namespace pbf::PBF_VARIANT
