@@ -36,8 +36,8 @@ struct SolverInfo {
   std::size_t bytes = 0;  ///< of the present arrays (device memory on cuda)
   double launches = 0;    ///< cuda: kernels and fills of one step; 0 before one was recorded
   int recordings = 0;     ///< cuda: of updates, so far
-  /// cuda, several ranks: the share of exchanges that ran beside other stages. The time of the
-  /// stage is what remains.
+  /// cuda, several ranks: the share of exchanges that ran beside other stages. The times of stages
+  /// are shares of an update in which none does.
   double hidden_exchange = 0;
   std::vector<StageTime> stages{};  ///< since the solver was created
 };

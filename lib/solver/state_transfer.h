@@ -160,13 +160,26 @@ class SavedState {
   }
   template <class C>
   void save(C& c) {
-    const auto& state = c.plan.program.state;
-    copies_.resize(state.size());
-    for (std::size_t k = 0; k < state.size(); ++k)
-      copies_[k].resize(c.kept_rows(*state[k]) * std::size_t(state[k]->bytes(C::precision)));
+    make_room(c);
     copy(c, [&](const FieldInfo& f, auto& saved) -> CopyPass::Part {
       return {c.bytes_of(f), saved.data(), std::int64_t(saved.bytes())};
     });
+  }
+  /// The rows of a rank become the first of the copy. now: what it has then, for field::row_state.
+  template <class C>
+  void save_rows(C& c, const RowRange& own, const RowState& now) {
+    make_room(c);
+    for (std::size_t k = 0; k < copies_.size(); ++k) {
+      const FieldInfo& f = *c.plan.program.state[k];
+      const auto row = std::size_t(f.bytes(C::precision));
+      const std::size_t first = f.is_per_particle() ? std::size_t(own.first) : 0;
+      const std::size_t rows =
+          f.is_per_particle() ? std::size_t(own.last - own.first) : c.kept_rows(f);
+      if (&f == &field::row_state)
+        c.exec.to_device(&now, 1, reinterpret_cast<RowState*>(copies_[k].data()));
+      else
+        c.exec.copy(c.bytes_of(f) + first * row, copies_[k].data(), rows * row);
+    }
   }
   template <class C>
   void restore(C& c) {
@@ -176,6 +189,13 @@ class SavedState {
   }
 
  private:
+  template <class C>
+  void make_room(C& c) {
+    const auto& state = c.plan.program.state;
+    copies_.resize(state.size());
+    for (std::size_t k = 0; k < state.size(); ++k)
+      copies_[k].resize(c.kept_rows(*state[k]) * std::size_t(state[k]->bytes(C::precision)));
+  }
   /// Copies all fields in one launch, because a run with a guard does so at every measurement.
   template <class C, class PartOf>
   void copy(C& c, const PartOf& part_of) {

@@ -171,7 +171,9 @@ class Stepper {
     moved();
   }
   void save(Saved& s) {
-    drop_ghosts();
+    if constexpr (has_ranks)
+      if (auto* rows = c_.exec.rows())
+        return s.save_rows(c_, {rows->first(), rows->last()}, rows->row_state());
     s.save(c_);
   }
   void restore(Saved& s) {

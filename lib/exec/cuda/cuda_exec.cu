@@ -206,11 +206,11 @@ double CudaExec::hidden_exchange() const {
 }
 
 std::vector<StageTime> CudaExec::stages(double seconds) const {
-  const double shown = 1 - hidden_exchange();
   double sampled = 0;
-  std::vector<StageTime> out = clock_.entries();
-  for (StageTime& e : out) sampled += e.seconds *= e.name == "exchange" ? shown : 1;
-  for (StageTime& e : out) e.seconds *= seconds / sampled;
+  for (const auto& e : clock_.entries()) sampled += e.seconds;
+  std::vector<StageTime> out;
+  for (const auto& e : clock_.entries())
+    out.push_back({e.name, e.seconds * (seconds / sampled), e.calls});
   return out;
 }
 

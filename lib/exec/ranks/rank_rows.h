@@ -30,6 +30,8 @@ class RankRows {
   int last() const { return last_; }            ///< excluded
   int all() const { return all_; }              ///< with ghosts
   int particles() const { return particles_; }  ///< of all ranks
+  /// What field::row_state is without ghosts.
+  RowState row_state() const { return {last_ - first_, particles_}; }
   const Slabs& slabs() const { return slabs_; }
   /// Own rows: those at the cuts below and above, which other ranks have as ghosts and which have
   /// ghosts as neighbors, and those between.
@@ -83,7 +85,7 @@ class RankRows {
           c.exec.move_down(begin, std::size_t(first_) * bytes, std::size_t(own) * bytes);
         }
     only_own(own);
-    c.put(field::row_state, {RowState{own, particles_}});
+    c.put(field::row_state, {row_state()});
     return true;
   }
   /// Integers of 64 bits become their sums over all ranks.

@@ -51,7 +51,7 @@ std::int64_t Slabs::most(const std::vector<std::int64_t>& in_layer) const {
 
 void Slabs::balance(const std::vector<std::int64_t>& in_layer) {
   const auto all = std::accumulate(in_layer.begin(), in_layer.end(), std::int64_t(0));
-  if (double(most(in_layer)) <= 1.05 * double(all) / ranks_) return;
+  if (double(most(in_layer)) <= 1.01 * double(all) / ranks_) return;
   Slabs other = *this;
   other.cut(in_layer);
   if (other.most(in_layer) < most(in_layer)) *this = other;

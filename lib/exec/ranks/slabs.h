@@ -13,7 +13,7 @@ class Slabs {
   /// in_layer: particles in each layer. Cuts are at multiples of `unit` layers. Throws
   /// Error(bad_input) if there are fewer units than ranks.
   Slabs(const std::vector<std::int64_t>& in_layer, int ranks, int unit);
-  /// New cuts if a rank has more than 1.05 times its share of the particles, and would have fewer.
+  /// New cuts if a rank has more than 1.01 times its share of the particles, and would have fewer.
   void balance(const std::vector<std::int64_t>& in_layer);
 
   int low(int rank) const { return cut_[std::size_t(rank)]; }
