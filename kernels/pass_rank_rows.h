@@ -6,44 +6,56 @@
 #include "kernels/atomics.h"
 #include "kernels/cell_index.h"
 #include "kernels/params.h"
+#include "kernels/step_counts.h"
 
 namespace pbf::PBF_VARIANT {
 
 /// The ranks that need a row: that of its layer of cells, and those of the adjacent layers.
-template <class Real>
-struct RanksOfRow {
-  Params<Real> p;
-  const Vec4<Real>* position;
+struct LayerRanks {
   const int* owner;  ///< rank of each layer
+  int layers, bins;  ///< bins of a layer
+  int me;            ///< this rank
 
   struct Span {
     int low, high;
     PBF_HD bool has(int rank) const { return low <= rank && rank <= high; }
   };
-  PBF_HD Span operator()(int i) const {
-    const int layer = cell_coordinate(position[i].z, p.inv_cell, p.cells_z);
-    return {owner[layer > 0 ? layer - 1 : 0],
-            owner[layer + 1 < p.cells_z ? layer + 1 : p.cells_z - 1]};
+  PBF_HD Span operator()(int bin) const {
+    const int layer = bin / bins;
+    return {owner[layer > 0 ? layer - 1 : 0], owner[layer + 1 < layers ? layer + 1 : layers - 1]};
   }
 };
 
-/// Lists the rows for each other rank; beyond `room` it only counts.
-template <class Real>
-struct SelectRowsPass {
-  RanksOfRow<Real> ranks;
-  int me;
-  int* list;   ///< of each rank: `room` rows
-  int* count;  ///< of each rank
-  int room;
-  PBF_HD void operator()(int i) const {
-    const auto to = ranks(i);
-    if (to.has(me - 1)) add(i, me - 1, take_place(count + me - 1));
-    if (to.has(me + 1)) add(i, me + 1, take_place(count + me + 1));
+/// Lists of own rows for each other rank; beyond `room` rows are only counted.
+struct RowLists {
+  LayerRanks ranks;
+  int* list;         ///< of each rank: `room` rows
+  int* count;        ///< of each rank, and then of all rows that go beyond the adjacent ones
+  int room, number;  ///< number of ranks
+
+  PBF_HD void add(int i, int bin) const {
+    const auto to = ranks(bin);
+    const int me = ranks.me;
+    if (to.has(me - 1)) put(i, me - 1, take_place(count + me - 1));
+    if (to.has(me + 1)) put(i, me + 1, take_place(count + me + 1));
     for (int r = to.low; r <= to.high; ++r)
-      if (r < me - 1 || r > me + 1) add(i, r, take_place_of(count + r));
+      if (r < me - 1 || r > me + 1) {
+        put(i, r, take_place_of(count + r));
+        take_place_of(count + number);
+      }
   }
-  PBF_HD void add(int i, int rank, int place) const {
+  PBF_HD void put(int i, int rank, int place) const {
     if (place < room) list[std::int64_t(rank) * room + place] = i;
+  }
+};
+/// Runs `First`, which gives a row its bin, and lists the row.
+template <class First>
+struct SelectRowsPass {
+  First first;
+  RowLists to;
+  PBF_HD void operator()(int i) const {
+    first(i);
+    to.add(i, first.bin[i]);
   }
 };
 
@@ -83,23 +95,60 @@ struct UnpackRowsPass {
   }
 };
 
-/// Rows that do not belong here from the next sort on get a negative id: of the listed ones, those
-/// that leave. A row may be in several lists.
-template <class Real>
-struct LeaveListedPass {
-  RanksOfRow<Real> ranks;
-  int me;
-  const int* list;
+/// A message of which the sender alone knows the number of rows: words before the rows, of which
+/// the first is the number.
+inline constexpr int kHeadWords = 4;
+/// For the words of a message with room for some rows.
+struct PackCountedPass {
+  PackRowsPass rows;
+  const int* count;
+  PBF_HD void operator()(int k) const {
+    if (k == 0) rows.to[-kHeadWords] = std::uint32_t(*count);
+    if (k < *count * rows.fields.words()) rows(k);
+  }
+};
+/// The same for what has arrived. Room that is left over becomes rows that leave in the next sort.
+struct UnpackCountedPass {
+  UnpackRowsPass rows;
   int* id;
   PBF_HD void operator()(int k) const {
+    const int words = rows.fields.words();
+    if (k < int(rows.from[-kHeadWords]) * words)
+      rows(k);
+    else if (k % words == 0)
+      id[rows.first + k / words] = -1;
+  }
+};
+
+/// Rows that do not belong here from the next sort on get a negative id: of the listed ones, those
+/// that leave. A row may be in several lists.
+struct LeaveListedPass {
+  LayerRanks ranks;
+  const int *list, *count, *bin;
+  int* id;
+  PBF_HD void operator()(int k) const {
+    if (k >= *count) return;
     const int i = list[k];
-    if (id[i] >= 0 && !ranks(i).has(me)) id[i] = -1 - id[i];
+    if (id[i] >= 0 && !ranks(bin[i]).has(ranks.me)) id[i] = -1 - id[i];
   }
 };
 /// The rows of other ranks.
 struct LeaveGhostsPass {
   int* id;
   PBF_HD void operator()(int i) const { id[i] = -1 - id[i]; }
+};
+
+/// A gather of a sort that counts what the prediction of own rows counts, and nothing of ghosts.
+template <class Gather>
+struct GatherOwnPass {
+  Gather gather;
+  const int *first, *last;  ///< own rows after the sort
+  StepCounts* not_counted;
+  PBF_HD void operator()(int from, int to) const {
+    Gather g = gather;
+    if (to < *first || to >= *last) g.counts = not_counted, g.order.damping = {};
+    g(from, to);
+  }
 };
 
 template <class Real>

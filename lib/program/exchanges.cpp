@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lib/base/error.h"
+#include "lib/program/features/solids.h"
 
 namespace pbf::program_module {
 namespace {
@@ -97,6 +98,21 @@ std::vector<Exchange> exchanges(const Program& program) {
   std::vector<Exchange> out = exchanges(program, program.next, state);
   for (Exchange& e : exchanges(program, program.rest, state)) out.push_back(std::move(e));
   return out;
+}
+
+std::vector<const Steps*> steps_on_ranks(const Program& program, const Scene& scene) {
+  if (has_more_than_walls(scene) || !program.has_pairs()) return {&program.update};
+  return {&program.first, &program.rest, &program.last};
+}
+std::vector<Exchange> exchanges_on_ranks(const Program& program, const Scene& scene) {
+  RankState state;
+  std::vector<Exchange> all;
+  for (int turn = 0; turn < 2; ++turn) {  // the first one is the update before
+    all.clear();
+    for (const Steps* s : steps_on_ranks(program, scene))
+      for (Exchange& e : exchanges(program, *s, state)) all.push_back(std::move(e));
+  }
+  return all;
 }
 
 }  // namespace pbf::program_module

@@ -31,9 +31,7 @@ RankPlan plan_ranks(const Plan& plan, const Scene& s, int ranks) {
   RankPlan r;
   r.ranks = ranks;
   r.layers = (plan.cells[2] + layers_per_unit(plan) - 1) / layers_per_unit(plan);
-  RankState state;
-  exchanges(plan.program, plan.program.update, state);  // the update before
-  for (const Exchange& e : exchanges(plan.program, plan.program.update, state)) {
+  for (const Exchange& e : exchanges_on_ranks(plan.program, s)) {
     r.exchanges += !e.ghosts.empty();
     r.sorts += !e.rows.empty();
     r.bytes_per_ghost += row_bytes(e.ghosts, s.precision) + row_bytes(e.rows, s.precision);

@@ -31,7 +31,7 @@ class Stepper {
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, InternalState<Real> first)
       : plan_(plan), c_(exec, scene, plan), program_(&plan.program) {
     if constexpr (has_ranks)
-      if (auto* rows = c_.exec.rows()) rows->begin(first, c_.p, plan);
+      if (auto* rows = c_.exec.rows()) rows->begin(first, c_.p, plan, scene);
     c_.launched = int(first.id.size());
     c_.make(first);
     find_pairs();
@@ -44,8 +44,11 @@ class Stepper {
     if (updates <= 0) return;
     c_.exec.begin();
     if constexpr (has_ranks)
-      if (c_.exec.rows()) {  // particles change ranks between the prediction and the sort
-        for (int k = 0; k < updates; ++k) run(program_->update);
+      if (auto* rows = c_.exec.rows()) {
+        rows->in_batch(true);
+        for (int k = 0; k < updates; ++k)
+          for (const Steps* s : steps_on_ranks(*program_, c_.scene)) run(*s);
+        rows->in_batch(false);
         return moved();
       }
     run(program_->first);

@@ -35,11 +35,10 @@ class CpuRows {
     std::memmove(begin, begin + by, bytes);
   }
   std::vector<int> values(const int* from, int n) { return {from, from + n}; }
-  /// Those at some places.
   template <std::size_t n>
-  std::array<int, n> values(const int* from, const std::array<int, n>& at) {
+  std::array<int, n> values(const std::array<const int*, n>& from) {
     std::array<int, n> out;
-    for (std::size_t k = 0; k < n; ++k) out[k] = from[at[k]];
+    for (std::size_t k = 0; k < n; ++k) out[k] = *from[k];
     return out;
   }
 

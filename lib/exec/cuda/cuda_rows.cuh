@@ -14,15 +14,12 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// Single values from different places of an array.
+/// Single values from different places.
 template <std::size_t n>
 struct ReadIntsPass {
-  const int* from;
-  std::array<int, n> at;
+  std::array<const int*, n> from;
   int* to;
-  PBF_HD void operator()(int) const {
-    for (std::size_t k = 0; k < n; ++k) to[k] = from[at[k]];
-  }
+  PBF_HD void operator()(int k) const { to[k] = *from[std::size_t(k)]; }
 };
 
 class CudaRows {
@@ -87,10 +84,10 @@ class CudaRows {
     return {values_.data(), values_.data() + n};
   }
   template <std::size_t n>
-  std::array<int, n> values(const int* from, const std::array<int, n>& at) {
+  std::array<int, n> values(const std::array<const int*, n>& from) {
     make_room(n);
-    launcher_.start(item_kernel<int, ReadIntsPass<n>>, 1, kBlock, 0, 1,
-                    ReadIntsPass<n>{from, at, values_.data()});
+    launcher_.start(item_kernel<int, ReadIntsPass<n>>, int(n), kBlock, 0, int(n),
+                    ReadIntsPass<n>{from, values_.data()});
     synchronize();
     std::array<int, n> out;
     std::copy_n(values_.data(), n, out.begin());

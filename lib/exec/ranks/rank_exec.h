@@ -152,7 +152,9 @@ class RankExec : public Base {
   template <bool leave, class First, class Near, class Gather>
   void sort_by_bin(const char* stage, const First& of, const Near& near, const Rows& rows, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
-    if (rows.counted)
+    if (rows_)
+      sort_on_ranks(stage, of, near, rows, bins, id, order, start, gather);
+    else if (rows.counted)
       Base::template sort_by_bin<leave>(stage, of, near, rows.all, bins, id, order, start, gather);
     else
       Base::template sort_by_bin<false>(stage, of, near, rows.all, bins, id, order, start, gather);
@@ -163,13 +165,15 @@ class RankExec : public Base {
                     const Params<Real>& p) {
     return Base::build_lists(RowRange(rows), far, position, bin_start, p);
   }
-  /// Lists that have too little memory on one rank are made again on all.
+  /// If lists had too little memory on one rank, or messages between two, all ranks repeat the
+  /// batch.
   bool grow_lists(int n) {
     const bool grown = Base::grow_lists(n);
     if (!rows_ || !Base::lists_overflow) return grown;
-    std::int64_t all = grown;
-    ranks_->sum({&all, 1});
-    return all > 0;
+    std::array<std::int64_t, 2> all{grown, rows_->lost()};
+    ranks_->sum(all);
+    rows_->forget_lost(all[1] > 0);
+    return all[0] > 0 || all[1] > 0;
   }
   template <class Updates>
   void repeat(int updates, Updates& u) {
@@ -200,6 +204,27 @@ class RankExec : public Base {
   }
 
  private:
+  /// Ranks sort in a pass of its own, without solids: a particle goes to its rank with its bin.
+  template <class First, class Near, class Gather>
+  void sort_on_ranks(const char* stage, const First& of, const Near& near, const Rows& rows,
+                     int bins, const int* id, int* order, int* start, const Gather& gather) {
+    if constexpr (PairPass<First> || requires { near.pass; }) {
+      throw Error(ExitCode::internal, "several ranks cannot run this sort");
+    } else {
+      const int of_layer = bins / rows_->layers();
+      const int all = rows_->route(*this, of.bin, of_layer, [&](const RowLists& to) {
+        Base::items(RowRange(rows), SelectRowsPass<First>{of, to});
+        this->mark(stage);
+      });
+      this->mark("exchange");
+      if (not_counted_.size() == 0) not_counted_.resize(1);
+      const int me = ranks_->rank();
+      const GatherOwnPass<Gather> own{gather, start + rows_->slabs().low(me) * of_layer,
+                                      start + rows_->slabs().high(me) * of_layer,
+                                      not_counted_.data()};
+      Base::template sort_by_bin<true>(stage, of, near, all, bins, id, order, start, own);
+    }
+  }
   /// Calls launch(range) for own rows: at once, or for those at the cuts beside the others.
   template <class Launch>
   void over(const RowRange& own, const Launch& launch) {
@@ -236,7 +261,7 @@ class RankExec : public Base {
 
   Communicator* ranks_;
   std::unique_ptr<RankRows<Base>> rows_;
-  typename Base::template Buffer<StepCounts> no_steps_;
+  typename Base::template Buffer<StepCounts> no_steps_, not_counted_;
 };
 
 }  // namespace pbf::PBF_VARIANT

@@ -33,6 +33,7 @@ class RankRows {
   /// What field::row_state is without ghosts.
   RowState row_state() const { return {last_ - first_, particles_}; }
   const Slabs& slabs() const { return slabs_; }
+  int layers() const { return int(slabs_.owners().size()); }
   /// Own rows: those at the cuts below and above, which other ranks have as ghosts and which have
   /// ghosts as neighbors, and those between.
   struct Parts {
@@ -50,15 +51,14 @@ class RankRows {
   /// A start: the first sort takes particles to the ranks of their layers. Throws Error(bad_input)
   /// if the grid has too few layers.
   template <class Real>
-  void begin(const InternalState<Real>& s, const Params<Real>& p, const Plan& plan) {
+  void begin(const InternalState<Real>& s, const Params<Real>& p, const Plan& plan,
+             const Scene& scene) {
     std::vector<std::int64_t> in_layer(std::size_t(p.cells_z));
     for (const Vec4<Real>& x : s.position)
       ++in_layer[std::size_t(cell_coordinate(x.z, p.inv_cell, p.cells_z))];
     ranks_.sum(in_layer);
     slabs_ = Slabs(in_layer, ranks_.size(), layers_per_unit(plan));
-    RankState state;
-    exchanges(plan.program, plan.program.update, state);  // the update before
-    const std::vector<Exchange> all = exchanges(plan.program, plan.program.update, state);
+    const std::vector<Exchange> all = exchanges_on_ranks(plan.program, scene);
     for (std::size_t k = 0; k < all.size(); ++k)
       if (all[k].pass && (!all[k].ghosts.empty() || !all[(k + 1) % all.size()].ghosts.empty()))
         beside_exchange_.insert(all[k].pass);
@@ -69,6 +69,7 @@ class RankRows {
   template <class C>
   void all_own(C& c, int n) {
     only_own(n);
+    counts_known_ = false;
     sorts_done_ = kBalanceEvery - 1;  // the next sort makes new cuts
     forget_near(c);
   }
@@ -105,7 +106,7 @@ class RankRows {
     const PassInfo& pass = program.passes[std::size_t(C::Passes::template index_of<P>())];
     const bool first = !c.iterating || c.iteration == 0;
     const Exchange e = exchanged_.before(pass, first, program);
-    has_exchanged_ = !e.sums.empty() || !e.ghosts.empty() || !e.rows.empty();
+    has_exchanged_ = !e.sums.empty() || !e.ghosts.empty();
     for (const FieldInfo* f : e.sums) add_up(c, *f);
     if (ranks_.rank() != 0)
       for (const FieldInfo* f : e.from_zero) clear(c, *f);
@@ -116,7 +117,7 @@ class RankRows {
     sorts_ = !e.rows.empty();
     if (sorts_) {
       if (++sorts_done_ % kBalanceEvery == 0) balance(c);
-      all_ = routes_.exchange(c, slabs_, {first_, last_}, all_, e.rows);
+      sorted_ = {row_fields(c, e.rows), c.ids(), c.capacity(), {first_, last_}, all_};
     }
     for (const FieldInfo* f : e.sums_within) clear(c, *f);
     add_within_ = [this, &c, sums = e.sums_within] {
@@ -124,11 +125,38 @@ class RankRows {
     };
     return ranks_.rank() == 0 || !e.on_one_rank;
   }
+  /// Within a pass that sorts: takes rows to their ranks. select(lists) runs a SelectRowsPass for
+  /// the own rows. bin: of each row; bins: of a layer. Returns the number of rows to sort.
+  template <class Select>
+  int route(Exec& exec, const int* bin, int bins, const Select& select) {
+    const auto lists = [&] {
+      const RowLists to = routes_.lists(exec, slabs_, bins);
+      select(to);
+      return to;
+    };
+    counted_ = Exec::lists_overflow && in_batch_ && counts_known_ && careful_ == 0;
+    all_ = counted_ ? routes_.exchange_counted(exec, sorted_, bin, lists)
+                    : routes_.exchange(exec, sorted_, bin, lists);
+    counts_known_ = true;
+    return all_;
+  }
   /// After it.
   template <class C>
   void after(C& c) {
     if (sorts_) find_own(c);
     sorts_ = false;
+  }
+  /// Updates in a batch may lose rows if the batch is repeated where lost() is true.
+  void in_batch(bool now) { in_batch_ = now; }
+  bool lost() const { return lost_; }
+  /// After a batch. any: on any rank. Then no row may be lost in the next batch, and in more and
+  /// more batches if that goes on.
+  void forget_lost(bool any) {
+    lost_ = false;
+    if (any)
+      careful_ = 1 << std::min(++losses_, 20);
+    else if (careful_ > 0)
+      --careful_;
   }
 
  private:
@@ -183,19 +211,39 @@ class RankRows {
     std::vector<std::int64_t> in_layer =
         c.exec.own_in_bins(c.p.cells_z, LayerPass<typename C::Real>{c.p, c.position()});
     ranks_.sum(in_layer);
+    const Slabs before = slabs_;
     slabs_.balance(in_layer);
+    if (slabs_ != before) counts_known_ = false;
   }
   /// After a sort: which rows are this rank's, and which of them are ghosts elsewhere.
   template <class C>
   void find_own(C& c) {
     const int bins = bin_count(c.p), per_layer = bins / c.p.layers, me = ranks_.rank();
     const int low = slabs_.low(me), high = slabs_.high(me);
-    const std::array<int, 5> at = c.exec.values(
-        c.data(field::bin_start), std::array{low * per_layer, (low + 1) * per_layer,
-                                             (high - 1) * per_layer, high * per_layer, bins});
+    const int* start = c.data(field::bin_start);
+    std::array<const int*, 10> from{start + low * per_layer, start + (low + 1) * per_layer,
+                                    start + (high - 1) * per_layer, start + high * per_layer,
+                                    start + bins};
+    const std::array<const int*, 5> counts =
+        counted_ ? routes_.counts() : std::array{start, start, start, start, start};
+    std::ranges::copy(counts, from.begin() + 5);
+    const std::array<int, 10> at = c.exec.values(from);
     first_ = at[0], low_end_ = at[1], high_begin_ = at[2], last_ = at[3], all_ = at[4];
+    if (counted_ && !routes_.learn({at[5], at[6], at[7], at[8], at[9]})) lost_ = true;
     if (me == 0) low_end_ = first_;
     if (me == ranks_.size() - 1) high_begin_ = last_;
+  }
+  template <class C>
+  static RowFields row_fields(C& c, const Fields& fields) {
+    RowFields rows;
+    if (fields.size() > std::size_t(RowFields::most))
+      throw Error(ExitCode::internal, "too many fields go along with particles");
+    for (const FieldInfo* f : fields) {
+      const int k = rows.fields++;
+      rows.rows[k] = reinterpret_cast<std::uint32_t*>(c.bytes_of(*f));
+      rows.begin[k + 1] = rows.begin[k] + f->bytes(C::precision) / 4;
+    }
+    return rows;
   }
   template <class C>
   void copy_ghosts(C& c, const Fields& fields) {
@@ -223,6 +271,9 @@ class RankRows {
   int first_ = 0, last_ = 0, all_ = 0, low_end_ = 0, high_begin_ = 0;  ///< rows
   int particles_ = 0, sorts_done_ = 0;
   bool sorts_ = false, has_exchanged_ = false, overlap_ = false;
+  bool in_batch_ = false, counts_known_ = false, counted_ = false, lost_ = false;
+  int losses_ = 0, careful_ = 0;  ///< batches
+  SortedRows sorted_;
   std::set<const PassInfo*> beside_exchange_;
   RankState exchanged_;
   std::function<void()> add_within_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <numeric>
 #include <vector>
@@ -11,128 +12,183 @@
 #include "lib/base/error.h"
 #include "lib/exec/ranks/communicator.h"
 #include "lib/exec/ranks/slabs.h"
-#include "lib/program/exchanges.h"
 
 namespace pbf::PBF_VARIANT {
 
+/// The rows of a solver before a sort.
+struct SortedRows {
+  RowFields fields{};  ///< what goes along with a particle
+  int* id = nullptr;
+  int capacity = 0;  ///< rows
+  RowRange own{0, 0};
+  int all = 0;
+};
+
+/// Each particle goes to the rank of its layer, and a copy to those of the adjacent layers. Rows
+/// that no longer belong here get a negative id, and the sort leaves them out.
+///
+/// Either the ranks tell each other how many rows they send. Or, so that the host does not wait for
+/// the device, messages have room for some more rows than the last ones had. Then learn() tells
+/// afterwards whether any row was lost.
 template <class Exec>
 class RowRoutes {
  public:
-  using Fields = Exchange::Fields;
   explicit RowRoutes(Communicator& ranks) : ranks_(ranks) {}
 
-  /// Sends each particle to the rank of its layer, and a copy to those of the adjacent layers. Rows
-  /// that no longer belong here get a negative id, and the sort leaves them out. own: rows of this
-  /// rank, of all_rows. Returns the number of rows with those that came.
-  template <class C>
-  int exchange(C& c, const Slabs& slabs, const RowRange& own, int all_rows, const Fields& fields) {
-    using Real = typename C::Real;
-    const auto ranks = std::size_t(ranks_.size()), me = std::size_t(ranks_.rank());
+  /// Numbers of rows between this rank and the adjacent ones, and of those that go farther.
+  using Counts = std::array<int, 5>;
+  enum { go_down, go_up, go_far, come_down, come_up };
+
+  /// The lists to fill before exchange(). bins: of a layer.
+  RowLists lists(Exec& exec, const Slabs& slabs, int bins) {
     if (owner_of_ != slabs) {
       const std::vector<int>& owners = slabs.owners();
       owner_.resize(owners.size());
-      c.exec.to_device(owners.data(), owners.size(), owner_.data());
+      exec.to_device(owners.data(), owners.size(), owner_.data());
       owner_of_ = slabs;
     }
-    const RanksOfRow<Real> of{c.p, c.position(), owner_.data()};
-    const std::vector<int> going = select(c, of, own);
+    const int ranks = ranks_.size();
+    count_.resize(std::size_t(ranks) + 1);
+    list_.resize(std::size_t(ranks) * std::size_t(room_));
+    exec.clear(reinterpret_cast<char*>(count_.data()), count_.bytes());
+    return {{owner_.data(), int(slabs.owners().size()), bins, ranks_.rank()},
+            list_.data(),
+            count_.data(),
+            room_,
+            ranks};
+  }
+  /// select(): fills lists(). bin: of each own row. Returns the number of rows with those that
+  /// came.
+  template <class Select>
+  int exchange(Exec& exec, const SortedRows& rows, const int* bin, const Select& select) {
+    const auto ranks = std::size_t(ranks_.size()), me = std::size_t(ranks_.rank());
+    RowLists lists = select();
+    std::vector<int> going = exec.values(count_.data(), int(ranks));
+    for (int most; (most = *std::ranges::max_element(going)) > room_;) {
+      room_ = most + most / 4;
+      lists = select();
+      going = exec.values(count_.data(), int(ranks));
+    }
     std::vector<int> all(ranks * ranks), coming(ranks);
     const std::vector<char> bytes = ranks_.all_gather(going.data(), ranks * sizeof(int));
     std::memcpy(all.data(), bytes.data(), bytes.size());
     for (std::size_t r = 0; r < ranks; ++r) coming[r] = all[r * ranks + me];
-    const RowFields rows = rows_of(c, fields);
-    const std::vector<Outgoing> out = packed(c, rows, going);
-    leave(c, of, own, all_rows, going);
-    return append(c, rows, all_rows, coming, out);
+    const int came = std::accumulate(coming.begin(), coming.end(), 0);
+    if (rows.all + came > rows.capacity) throw too_many();
+
+    const int words = rows.fields.words();
+    const std::vector<Outgoing> out =
+        messages<Outgoing>(send_, going, words, [&](int r, std::uint32_t* to, int n) {
+          exec.items(n * words, PackRowsPass{rows.fields, lists.list + r * room_, to});
+        });
+    leave(exec, rows, lists, bin, going);
+    const std::vector<Incoming> in =
+        messages<Incoming>(receive_, coming, words, [](int, std::uint32_t*, int) {});
+    exec.exchange(out, in);
+    exec.items(came * words, UnpackRowsPass{rows.fields, receive_.data(), rows.all});
+    const auto of = [&](const std::vector<int>& counts, std::size_t r) {
+      return r < ranks ? counts[r] : 0;
+    };
+    known_ = {of(going, me - 1), of(going, me + 1), 0, of(coming, me - 1), of(coming, me + 1)};
+    return rows.all + came;
+  }
+  /// The same with room for more rows than at the last exchange, without waiting for any rank.
+  template <class Select>
+  int exchange_counted(Exec& exec, const SortedRows& rows, const int* bin, const Select& select) {
+    for (std::size_t k = 0; k < known_.size(); ++k) most_[k] = room_for(known_[k]);
+    room_ = std::max({room_, most_[go_down], most_[go_up]});
+    const RowLists lists = select();
+    const int words = rows.fields.words(), me = ranks_.rank();
+    std::vector<int> going(std::size_t(ranks_.size()));
+    std::vector<Outgoing> out;
+    std::vector<Incoming> in;
+    reserve(send_, counted_words(words, most_[go_down]) + counted_words(words, most_[go_up]));
+    reserve(receive_,
+            counted_words(words, most_[come_down]) + counted_words(words, most_[come_up]));
+    std::uint32_t *to = send_.data(), *from = receive_.data();
+    for (const int r : {me - 1, me + 1}) {
+      if (r < 0 || r >= ranks_.size()) continue;
+      const int n = going[std::size_t(r)] = most_[r < me ? go_down : go_up],
+                coming = most_[r < me ? come_down : come_up];
+      exec.items(n * words, PackCountedPass{{rows.fields, lists.list + r * room_, to + kHeadWords},
+                                            lists.count + r});
+      out.push_back({r, to, counted_words(words, n) * sizeof *to});
+      in.push_back({r, from, counted_words(words, coming) * sizeof *from});
+      to += counted_words(words, n), from += counted_words(words, coming);
+    }
+    exec.exchange(out, in);
+    leave(exec, rows, lists, bin, going);
+    int all = rows.all;
+    for (const Incoming& i : in) {
+      const auto* head = static_cast<const std::uint32_t*>(i.data);
+      int n = most_[i.from < me ? come_down : come_up];
+      if (all + n > rows.capacity) n = rows.capacity - all, crowded_ = true;
+      exec.items(n * words, UnpackCountedPass{{rows.fields, head + kHeadWords, all}, rows.id});
+      all += n;
+      heads_[i.from < me ? 0 : 1] = reinterpret_cast<const int*>(head);
+    }
+    return all;
+  }
+  /// Where learn() finds its counts, which are there after exchange_counted().
+  std::array<const int*, 5> counts() const {
+    const int me = ranks_.rank(), ranks = ranks_.size();
+    const int *count = count_.data(), *none = count + me;
+    return {me > 0 ? count + me - 1 : none, me + 1 < ranks ? count + me + 1 : none, count + ranks,
+            me > 0 ? heads_[0] : none, me + 1 < ranks ? heads_[1] : none};
+  }
+  /// After exchange_counted(). False if a row found no room, or went to another rank than the
+  /// adjacent ones: the sort lacks it.
+  bool learn(const Counts& counts) {
+    bool good = counts[go_far] == 0 && !crowded_;
+    for (const int k : {go_down, go_up, come_down, come_up}) good = good && counts[k] <= most_[k];
+    known_ = counts;
+    crowded_ = false;
+    return good;
   }
 
  private:
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  template <class C>
-  static RowFields rows_of(C& c, const Fields& fields) {
-    RowFields rows;
-    if (fields.size() > std::size_t(RowFields::most))
-      throw Error(ExitCode::internal, "too many fields go along with particles");
-    for (const FieldInfo* f : fields) {
-      const int k = rows.fields++;
-      rows.rows[k] = reinterpret_cast<std::uint32_t*>(c.bytes_of(*f));
-      rows.begin[k + 1] = rows.begin[k] + f->bytes(C::precision) / 4;
+  static Error too_many() {
+    return {ExitCode::unavailable,
+            "too many particles for the memory of a rank; use other numbers of ranks"};
+  }
+  /// The same on both ranks of a message.
+  static int room_for(int rows) { return rows + rows / 8 + 256; }
+  static std::size_t counted_words(int words, int rows) {
+    return std::size_t(kHeadWords) + std::size_t(rows) * std::size_t(words);
+  }
+  /// Those to or from ranks with so many rows each, one behind the other, and empty ones for the
+  /// adjacent ranks, which always have a message. fill(rank, memory, rows)
+  template <class Message, class Fill>
+  std::vector<Message> messages(Buffer<std::uint32_t>& memory, const std::vector<int>& rows,
+                                int words, const Fill& fill) {
+    reserve(memory, std::accumulate(rows.begin(), rows.end(), std::size_t(0)) * std::size_t(words));
+    std::vector<Message> all;
+    std::uint32_t* at = memory.data();
+    const int me = ranks_.rank();
+    for (int r = 0; r < ranks_.size(); ++r) {
+      const int n = rows[std::size_t(r)];
+      if (n == 0 && r != me - 1 && r != me + 1) continue;
+      const auto size = std::size_t(n) * std::size_t(words);
+      all.push_back({r, at, size * sizeof *at});
+      fill(r, at, n);
+      at += size;
     }
-    return rows;
+    return all;
   }
-  /// Makes the list of own rows for each rank, with more room where it is needed. Returns their
-  /// lengths.
-  template <class C, class Real>
-  std::vector<int> select(C& c, const RanksOfRow<Real>& of, const RowRange& own) {
-    const int ranks = ranks_.size();
-    count_.resize(std::size_t(ranks));
-    for (;;) {
-      list_.resize(std::size_t(ranks) * std::size_t(room_));
-      c.exec.clear(reinterpret_cast<char*>(count_.data()), count_.bytes());
-      c.exec.items(own,
-                   SelectRowsPass<Real>{of, ranks_.rank(), list_.data(), count_.data(), room_});
-      std::vector<int> counts = c.exec.values(count_.data(), ranks);
-      const int most = *std::ranges::max_element(counts);
-      if (most <= room_) return counts;
-      room_ = most + most / 4;
-    }
+  /// going: most rows in each list.
+  static void leave(Exec& exec, const SortedRows& rows, const RowLists& lists, const int* bin,
+                    const std::vector<int>& going) {
+    for (int r = 0; r < lists.number; ++r)
+      exec.items(going[std::size_t(r)], LeaveListedPass{lists.ranks, lists.list + r * lists.room,
+                                                        lists.count + r, bin, rows.id});
+    exec.items(RowRange{0, rows.own.first}, LeaveGhostsPass{rows.id});
+    exec.items(RowRange{rows.own.last, rows.all}, LeaveGhostsPass{rows.id});
   }
-  const int* list(std::size_t rank) { return list_.data() + rank * std::size_t(room_); }
-  /// Whether this rank sends a message of so many rows to another: those that it always has
-  /// something for get an empty one, too.
-  bool sends(std::size_t rank, int rows) const {
-    const int to = int(rank), me = ranks_.rank();
-    return rows > 0 || to == me - 1 || to == me + 1;
-  }
-  template <class C>
-  std::vector<Outgoing> packed(C& c, const RowFields& rows, const std::vector<int>& going) {
-    const int words = rows.words();
-    reserve(send_, words, going);
-    std::vector<Outgoing> out;
-    std::uint32_t* to = send_.data();
-    for (std::size_t r = 0; r < going.size(); ++r) {
-      if (!sends(r, going[r])) continue;
-      const auto all = std::size_t(going[r]) * std::size_t(words);
-      out.push_back({int(r), to, all * sizeof *to});
-      c.exec.items(int(all), PackRowsPass{rows, list(r), to});
-      to += all;
-    }
-    return out;
-  }
-  template <class C, class Real>
-  void leave(C& c, const RanksOfRow<Real>& of, const RowRange& own, int all_rows,
-             const std::vector<int>& going) {
-    for (std::size_t r = 0; r < going.size(); ++r)
-      c.exec.items(going[r], LeaveListedPass<Real>{of, ranks_.rank(), list(r), c.ids()});
-    c.exec.items(RowRange{0, own.first}, LeaveGhostsPass{c.ids()});
-    c.exec.items(RowRange{own.last, all_rows}, LeaveGhostsPass{c.ids()});
-  }
-  /// Exchanges the rows and puts those that come behind all others. Returns the number of all.
-  template <class C>
-  int append(C& c, const RowFields& rows, int all_rows, const std::vector<int>& coming,
-             const std::vector<Outgoing>& out) {
-    if (std::accumulate(coming.begin(), coming.end(), std::int64_t(all_rows)) > c.capacity())
-      throw Error(ExitCode::unavailable,
-                  "too many particles for the memory of a rank; use other numbers of ranks");
-    const int words = rows.words();
-    reserve(receive_, words, coming);
-    std::vector<Incoming> in;
-    std::uint32_t* at = receive_.data();
-    for (std::size_t r = 0; r < coming.size(); ++r) {
-      if (!sends(r, coming[r])) continue;
-      in.push_back({int(r), at, std::size_t(coming[r]) * std::size_t(words) * sizeof *at});
-      at += std::size_t(coming[r]) * std::size_t(words);
-    }
-    c.exec.exchange(out, in);
-    const auto came = int(at - receive_.data());
-    c.exec.items(came, UnpackRowsPass{rows, receive_.data(), all_rows});
-    return all_rows + came / words;
-  }
-  static void reserve(Buffer<std::uint32_t>& buffer, int words, const std::vector<int>& rows) {
-    const auto n = std::accumulate(rows.begin(), rows.end(), std::size_t(0)) * std::size_t(words);
-    if (buffer.size() < n) buffer.resize(n + n / 4);
+  static void reserve(Buffer<std::uint32_t>& buffer, std::size_t words) {
+    if (buffer.size() < words) buffer.resize(words + words / 4);
   }
 
   Communicator& ranks_;
@@ -140,6 +196,9 @@ class RowRoutes {
   int room_ = 1024;
   Buffer<int> owner_, list_, count_;
   Buffer<std::uint32_t> send_, receive_;
+  Counts known_{}, most_{};
+  std::array<const int*, 2> heads_{};
+  bool crowded_ = false;
 };
 
 }  // namespace pbf::PBF_VARIANT

@@ -13,6 +13,8 @@
 #include "lib/program/time_order.h"
 
 namespace pbf::program_module {
+/// More than a box that stands still.
+inline bool has_more_than_walls(const Scene& s) { return has_solids(s) || has_motion(s); }
 inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
 /// Enough for all half cells of the grid.
 inline std::int64_t per_half_cell(const Sizes& n) {
@@ -147,7 +149,7 @@ struct NearSolids {
     template <class C>
     void make(C& c) {
       const Scene& s = c.scene;
-      more_than_walls = has_solids(s) || has_motion(s);
+      more_than_walls = has_more_than_walls(s);
       if (!has_solids(s)) return;
       SolidScene<Real> scene;
       scene.walls = c.p.boundary;
