@@ -158,20 +158,26 @@ class SavedState {
     for (const auto& copy : copies_) all.push_back(copy.data());
     return all;
   }
+  /// rows: the first ones, of fields of particles. Arrays may have room for many more, which takes
+  /// no memory on the host until it is written.
   template <class C>
-  void save(C& c) {
+  void save(C& c, int rows) {
     const auto& state = c.plan.program.state;
     copies_.resize(state.size());
-    for (std::size_t k = 0; k < state.size(); ++k)
-      copies_[k].resize(c.kept_rows(*state[k]) * std::size_t(state[k]->bytes(C::precision)));
-    copy(c, [&](const FieldInfo& f, auto& saved) -> CopyPass::Part {
-      return {c.bytes_of(f), saved.data(), std::int64_t(saved.bytes())};
+    used_.resize(state.size());
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      const auto row = std::size_t(state[k]->bytes(C::precision)), all = c.kept_rows(*state[k]);
+      copies_[k].resize(all * row);
+      used_[k] = std::int64_t((state[k]->is_per_particle() ? std::size_t(rows) : all) * row);
+    }
+    copy(c, [&](std::size_t k) -> CopyPass::Part {
+      return {c.bytes_of(*state[k]), copies_[k].data(), used_[k]};
     });
   }
   template <class C>
   void restore(C& c) {
-    copy(c, [&](const FieldInfo& f, auto& saved) -> CopyPass::Part {
-      return {saved.data(), c.bytes_of(f), std::int64_t(saved.bytes())};
+    copy(c, [&](std::size_t k) -> CopyPass::Part {
+      return {copies_[k].data(), c.bytes_of(*c.plan.program.state[k]), used_[k]};
     });
   }
 
@@ -187,14 +193,15 @@ class SavedState {
       longest = 0;
     };
     for (std::size_t k = 0; k < copies_.size(); ++k) {
-      pass.part[pass.parts++] = part_of(*c.plan.program.state[k], copies_[k]);
-      longest = std::max(longest, std::int64_t(copies_[k].bytes()));
+      pass.part[pass.parts++] = part_of(k);
+      longest = std::max(longest, used_[k]);
       if (pass.parts == CopyPass::most) launch();
     }
     if (pass.parts > 0) launch();
   }
 
   std::vector<typename Exec::template Buffer<char>> copies_;
+  std::vector<std::int64_t> used_;  ///< bytes of each copy that hold something
 };
 
 /// s, by how much the velocities are earlier than the positions, as far as the scheme knows: half

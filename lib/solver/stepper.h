@@ -148,10 +148,8 @@ class Stepper {
     s.position = downloaded(c_, field::position, c_.bytes_of(field::position), std::size_t(n),
                             c_.order_of_ids(c_.ids(), n));
     if constexpr (has_ranks)
-      if (c_.exec.rows()) {  // not all particles
-        const std::vector<int> own = ids();
-        s.id.assign(own.begin(), own.end());
-      }
+      if (c_.exec.rows())  // not all particles
+        for (const int id : ids()) s.id.push_back(id);
     return s;
   }
   SolverState state() {
@@ -172,7 +170,10 @@ class Stepper {
   }
   void save(Saved& s) {
     drop_ghosts();
-    s.save(c_);
+    int rows = capacity();
+    if constexpr (has_ranks)
+      if (auto* here = c_.exec.rows()) rows = here->all();
+    s.save(c_, rows);
   }
   void restore(Saved& s) {
     s.restore(c_);
