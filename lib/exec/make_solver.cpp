@@ -27,13 +27,8 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t avail
                             bytes_text(double(available)), memory_remedy(scene, plan)));
 }
 
-std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {
-  if (world()) return make_ranked_solver(scene, plan, std::move(particles));
-  return make_local_solver(scene, plan, std::move(particles), nullptr);
-}
-
-std::unique_ptr<Solver> make_local_solver(const Scene& scene, const Plan& plan, Particles particles,
-                                          Communicator* ranks) {
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles,
+                                    Communicator* ranks) {
   if (scene.backend == Backend::cpu)
     return make_cpu_solver(scene, plan, std::move(particles), ranks);
 #ifdef PBF_HAS_CUDA

@@ -18,14 +18,11 @@ namespace pbf::exec_module {
 /// killed later without a word. The memory of a device is checked by make_solver.
 void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t available);
 
-/// Throws Error(unavailable) if the backend, a device or memory is missing. Takes the particles and
-/// frees them during the construction. It does not prestabilize them: code that runs a scene from
-/// its start calls solver_of() (lib/run/start.h).
-std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
-
-/// The same in this process, also if the program runs on several ranks. ranks: null, or those of
-/// which the solver is a part (lib/exec/ranks/ranked_solver.h).
-std::unique_ptr<Solver> make_local_solver(const Scene& scene, const Plan& plan, Particles particles,
-                                          Communicator* ranks);
+/// A solver in this process. Throws Error(unavailable) if the backend, a device or memory is
+/// missing. Takes the particles and frees them during the construction. It does not prestabilize
+/// them: code that runs a scene from its start calls solver_of() (lib/run/start.h). ranks: null, or
+/// those of which the solver is a part (lib/exec/ranks/ranked_solver.h).
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles,
+                                    Communicator* ranks = nullptr);
 
 }  // namespace pbf::exec_module

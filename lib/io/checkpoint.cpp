@@ -11,6 +11,7 @@
 #include "lib/base/error.h"
 #include "lib/base/own_file.h"
 #include "lib/base/regular_file.h"
+#include "lib/io/checkpoint_rows.h"
 #include "lib/io/h5_output.h"
 #include "lib/io/h5_read.h"
 #include "lib/scene/scene_files.h"
@@ -19,31 +20,8 @@ namespace pbf::io_module {
 namespace {
 
 namespace fs = std::filesystem;
-using h5::check;
 
 constexpr std::int64_t kFormat = 3, kOldestFormat = 2;
-constexpr hsize_t kChunkRows = hsize_t{1} << 18;
-
-/// Rows of `components` numbers, with a checksum per chunk (Fletcher 32).
-template <class T>
-void write_rows(hid_t file, const char* name, const char* unit, hid_t type, hsize_t components,
-                const std::vector<T>& values) {
-  const hsize_t rows = values.size() / components;
-  const hsize_t chunk[2] = {std::clamp<hsize_t>(rows, 1, kChunkRows), components};
-  const h5::Properties create(H5Pcreate(H5P_DATASET_CREATE));
-  check(H5Pset_chunk(create, 2, chunk));
-  check(H5Pset_fletcher32(create));
-  h5::write_dataset(file, name, type, {rows, components}, h5::native<T>(), values.data(), unit,
-                    create);
-}
-
-template <class T>
-void read_rows(hid_t file, const char* name, std::int64_t n, std::size_t components,
-               std::vector<T>& values) {
-  if (h5::shape(h5::open_dataset(file, name)) != std::vector{hsize_t(n), hsize_t(components)})
-    throw h5::Failure(std::string("dataset ") + name + " has the wrong size");
-  values = h5::read_all<T>(file, name);
-}
 
 /// f(attribute name, number, older files lack it) of the members that are numbers: one list for
 /// both directions.
@@ -117,16 +95,6 @@ StepHistory read_steps(hid_t file) {
   return s;
 }
 
-/// The rows of a field of the state besides the particles' places.
-StoredField read_field(hid_t file, const std::string& name) {
-  const std::vector<hsize_t> size = h5::shape(h5::open_dataset(file, name.c_str()));
-  if (size.size() != 2 || size[1] < 1 || size[1] > 1000)
-    throw h5::Failure("dataset " + name + " has the wrong size");
-  StoredField f{name, false, int(size[1])};
-  read_rows(file, name.c_str(), std::int64_t(size[0]), std::size_t(size[1]), f.values);
-  return f;
-}
-
 /// Format 2 has the counts in attributes.
 StoredField counts_of_format_2(hid_t file) {
   StoredField f{"counts", false, 4, std::vector<double>(4)};
@@ -141,21 +109,17 @@ StoredField counts_of_format_2(hid_t file) {
   return f;
 }
 
-void write_file(const std::string& path, const SavedRun& s) {
+void write_file(const std::string& path, const SavedRun& saved, const GiveState& pieces) {
   const h5::Properties access = h5::writer_access();
   ::unlink(path.c_str());  // what a killed run has left; whatever is there is not followed
   h5::File file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
   try {
-    const bool wide = s.state.precision == Precision::dbl;
-    const hid_t real = wide ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
-    write_rows(file, "position", "h", real, 3, s.state.position);
-    write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
-    const auto largest = std::ranges::max_element(s.state.id);
-    const bool long_ids = largest != s.state.id.end() && *largest > 2147483647;
-    write_rows(file, "id", "1", long_ids ? H5T_STD_I64LE : H5T_STD_I32LE, 1, s.state.id);
-    for (const StoredField& f : s.state.fields)
-      write_rows(file, f.name.c_str(), "1", f.real ? real : H5T_IEEE_F64LE, hsize_t(f.numbers),
-                 f.values);
+    SavedRun split;  // without rows
+    if (pieces)
+      write_pieces(file, pieces, saved.particles, (split = saved).state);
+    else
+      write_state(file, saved.state);
+    const SavedRun& s = pieces ? split : saved;
     h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", word(s.state.precision));
     for_each_number(s, writing(file));
@@ -176,7 +140,7 @@ void write_file(const std::string& path, const SavedRun& s) {
   if (!file.reset()) throw h5::Failure(h5::reason());
 }
 
-SavedRun read_file(const std::string& path) {
+SavedRun read_file(const std::string& path, bool rows) {
   require_own_file(path);
   const h5::Reading file(path);
   const auto format = h5::read_number<std::int64_t>(file, "format_version");
@@ -202,14 +166,12 @@ SavedRun read_file(const std::string& path) {
   }
   if (s.particles < 0 || s.particles > 2147483647 || s.state.updates < 0)
     throw h5::Failure("a number of particles or updates that cannot be");
-  read_rows(file, "position", s.particles, 3, s.state.position);
-  read_rows(file, "velocity", s.particles, 3, s.state.velocity);
-  read_rows(file, "id", s.particles, 1, s.state.id);
-  for (const std::string& name : h5::children(file, H5O_TYPE_DATASET))
-    if (name != "position" && name != "velocity" && name != "id")
-      s.state.fields.push_back(read_field(file, name));
+  if (rows)
+    read_state(file, s.particles, s.state);
+  else
+    read_head(file, s.particles, s.state), s.path = path;
   if (format == 2) s.state.fields.push_back(counts_of_format_2(file));
-  if (!fits(s.state, s.particles, true))
+  if (rows && !fits(s.state, s.particles, true))
     throw h5::Failure("dataset id has negative numbers, or some of them twice");
   return s;
 }
@@ -221,13 +183,13 @@ bool is_there(const std::string& path) {
 }
 
 /// In a process of its own first: HDF5 may crash on what is damaged. Failure.
-SavedRun try_and_read(const std::string& path) {
+SavedRun try_and_read(const std::string& path, bool rows) {
   try {
-    if (not_regular(path).empty()) h5::trial(path, [&path] { read_file(path); });
+    if (not_regular(path).empty()) h5::trial(path, [&] { read_file(path, rows); });
   } catch (const Error& e) {
     throw h5::Failure(e.what());
   }
-  return read_file(path);
+  return read_file(path, rows);
 }
 
 void rename_or_fail(const std::string& from, const std::string& to) {
@@ -236,12 +198,12 @@ void rename_or_fail(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-void write_checkpoint(const std::string& folder, const SavedRun& saved) {
+void write_checkpoint(const std::string& folder, const SavedRun& saved, const GiveState& pieces) {
   const std::string path = folder + "/checkpoint.h5", temporary = path + ".tmp";
   try {
     {
       const h5::Lock lock;
-      write_file(temporary, saved);
+      write_file(temporary, saved, pieces);
     }
     if (is_there(path)) rename_or_fail(path, folder + "/checkpoint_prev.h5");
     rename_or_fail(temporary, path);
@@ -253,14 +215,14 @@ void write_checkpoint(const std::string& folder, const SavedRun& saved) {
   }
 }
 
-std::optional<SavedRun> read_checkpoint(const std::string& folder,
-                                        std::vector<std::string>& notes) {
+std::optional<SavedRun> read_checkpoint(const std::string& folder, std::vector<std::string>& notes,
+                                        bool rows) {
   std::string damaged;
   for (const char* name : {"checkpoint.h5", "checkpoint_prev.h5"}) {
     const std::string path = folder + "/" + name;
     if (!is_there(path)) continue;
     try {
-      SavedRun saved = try_and_read(path);
+      SavedRun saved = try_and_read(path, rows);
       if (!damaged.empty()) notes.push_back(damaged + "; the one before it is taken");
       return saved;
     } catch (const h5::Failure& f) {

@@ -31,19 +31,29 @@ void sync(hid_t file) {
   if (::fdatasync(descriptor(file)) != 0) throw Failure(std::strerror(errno));
 }
 
-std::int64_t flush_reserved(hid_t file) {
+std::int64_t stored_size(hid_t file) {
+  const off_t size = ::lseek(descriptor(file), 0, SEEK_END);
+  if (size < 0) throw Failure(std::strerror(errno));
+  return size;
+}
+
+bool reserve(hid_t file, std::int64_t from) {
   haddr_t end = 0;
   check(H5Fget_eoa(file, &end));
-  const int fd = descriptor(file);
-  const off_t size = ::lseek(fd, 0, SEEK_END), wanted = static_cast<off_t>(end);
-  if (size < 0) throw Failure(std::strerror(errno));
-  if (wanted > size) {
-    if (::fallocate(fd, 0, size, wanted - size) != 0 &&
-        !(errno == EOPNOTSUPP && ::ftruncate(fd, wanted) == 0))
-      throw Failure(std::strerror(errno));
-    sync(file);  // HDF5 opens no file that is shorter than its first page says
-  }
+  const off_t wanted = static_cast<off_t>(end);
+  if (wanted <= from) return false;
+  if (::fallocate(descriptor(file), 0, from, wanted - from) != 0 &&
+      !(errno == EOPNOTSUPP && ::ftruncate(descriptor(file), wanted) == 0))
+    throw Failure(std::strerror(errno));
+  return true;
+}
+
+std::int64_t flush_reserved(hid_t file, bool longer) {
+  if (reserve(file, stored_size(file)) || longer)
+    sync(file);  // HDF5 opens no file shorter than its first page says
   check(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  haddr_t end = 0;
+  check(H5Fget_eoa(file, &end));
   return static_cast<std::int64_t>(end);
 }
 
@@ -153,6 +163,26 @@ void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values)
   check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
   const Space memory(H5Screate_simple(rank, block, nullptr));
   check(H5Dwrite(dataset_, type, memory, file, H5P_DEFAULT, values));
+}
+
+std::vector<std::uint64_t> Column::make_room(hsize_t first, hsize_t count) {
+  const hsize_t end = first + count, width = this->width();
+  if (end > rows_) grow(end);
+  const Type type(H5Dget_type(dataset_));
+  const std::vector<char> row(width * H5Tget_size(type));
+  std::vector<std::uint64_t> chunks;
+  for (hsize_t at = first; at < end; at += chunk_rows_) {
+    write(at, 1, type, row.data());  // HDF5 takes the space of a whole chunk for it
+    const hsize_t corner[2] = {at, 0};
+    unsigned filters = 0;
+    haddr_t place = HADDR_UNDEF;
+    hsize_t bytes = 0;
+    check(H5Dget_chunk_info_by_coord(dataset_, corner, &filters, &place, &bytes));
+    if (place == HADDR_UNDEF || bytes != chunk_rows_ * row.size())
+      throw Failure("HDF5 has made no room for a chunk");
+    chunks.push_back(place);
+  }
+  return chunks;
 }
 
 }  // namespace pbf::io_module::h5

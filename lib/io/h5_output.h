@@ -16,10 +16,18 @@ namespace pbf::io_module::h5 {
 /// as the last flush left it.
 Properties writer_access();
 
+/// The size of the file on the disk, bytes.
+std::int64_t stored_size(hid_t file);
+/// Makes sure that the disk has room for the file from byte `from` on, and that no later process
+/// takes it for something else. Returns whether the file became longer. Failure with the system's
+/// reason.
+bool reserve(hid_t file, std::int64_t from);
+
 /// Writes what HDF5 holds in memory; the size of the file in bytes. HDF5 goes on after a failed
 /// write and would leave a file that refers to what is not there, so the space is made sure of
-/// first: nothing can fail after that. Failure with the system's reason.
-std::int64_t flush_reserved(hid_t file);
+/// first: nothing can fail after that. longer: the file has become longer since it was stored.
+/// Failure with the system's reason.
+std::int64_t flush_reserved(hid_t file, bool longer = false);
 
 /// Waits until the disk has stored the file's bytes and its size (fdatasync). Network file systems
 /// and quotas report a full disk only here. Failure with the system's reason.
@@ -70,6 +78,9 @@ class Column {
   bool open() const { return dataset_.open(); }
   /// Writes `count` rows of memory type `type` at row `first`; the dataset grows as needed.
   void write(hsize_t first, hsize_t count, hid_t type, const void* values);
+  /// Makes room for rows that others write: bytes from the start of the file to each chunk, from
+  /// the chunk on that begins with row `first`. For columns without compression.
+  std::vector<std::uint64_t> make_room(hsize_t first, hsize_t count);
   template <class T>
   void append(const std::vector<T>& values) {
     write(rows_, values.size() / width(), native<T>(), values.data());

@@ -12,6 +12,7 @@
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
+#include "lib/solver/split_rows.h"
 
 namespace pbf::io_module {
 
@@ -97,6 +98,15 @@ class RunWriter {
   /// Queues a frame of any particles; blocks while more than 2 wait. A frame is durable (on the
   /// disk, readable after kill -9 and after a power cut) once frames_written() counts it.
   void write(Snapshot&& snapshot);
+  /// The same for a frame whose rows are elsewhere (lib/solver/split_rows.h): makes room for it,
+  /// once all that was queued is done. Its ids are 0, 1, 2 ... `chunks` are empty in a file with
+  /// compression, whose rows are given to rows(), in whole chunks.
+  FramePlaces begin_frame(const Snapshot& head);
+  /// Rows of field number `field` without the ids. Blocks while more than 2 pieces wait.
+  void rows(std::size_t field, std::int64_t first, FieldArray&& rows);
+  /// When all rows have been given to rows() or stored by others: queues the end of the frame.
+  void commit_frame();
+  std::uint64_t inode();  ///< of the file
   void log(const LogRow& row);
   void gauges(const GaugeRow& row);
   std::int64_t frames_written() const;

@@ -1,7 +1,10 @@
 #include "lib/io/run_output.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "lib/base/error.h"
 #include "lib/io/h5_output.h"
@@ -50,19 +53,48 @@ RunOutput::~RunOutput() {
 }
 
 void RunOutput::write_frame(const Snapshot& s) {
-  check_fields(s);
+  add_frame(s, nullptr);
+  commit_frame();
+}
+
+FramePlaces RunOutput::begin_frame(const Snapshot& head) {
+  FramePlaces places;
+  const std::int64_t before = h5::stored_size(file_);
+  add_frame(head, &places);
+  places.chunk_rows = static_cast<std::int64_t>(chunk_rows_);
+  longer_ = h5::reserve(file_, before) || longer_;
+  return places;
+}
+
+void RunOutput::rows(std::size_t field, std::int64_t first, const FieldArray& rows) {
+  const std::size_t row = static_cast<std::size_t>(rows.components) * size_of(rows.type);
+  fields_.at(field).data.write(frame_row_ + static_cast<hsize_t>(first), rows.bytes.size() / row,
+                               h5::memory_type(rows.type), rows.bytes.data());
+}
+
+std::uint64_t RunOutput::inode() const {
+  struct stat s {};
+  return ::fstat(h5::descriptor(file_), &s) == 0 ? s.st_ino : 0;
+}
+
+void RunOutput::add_frame(const Snapshot& s, FramePlaces* places) {
+  check_fields(s, places != nullptr);
   if (fields_.empty()) create_fields(s);
   const hsize_t first = s.count == 0 ? end_row_ : whole_chunks(end_row_);  // never behind the end
+  frame_row_ = first;
   const auto start = static_cast<std::int64_t>(first);
   std::size_t k = 0;
   for (const FieldArray& f : s.fields) {
     if (f.name == "id") continue;
     Field& field = fields_[k++];
-    field.data.write(first, s.count, h5::memory_type(f.type), f.bytes.data());
+    if (!places)
+      field.data.write(first, s.count, h5::memory_type(f.type), f.bytes.data());
+    else if (!gzip_)
+      places->chunks.push_back(field.data.make_room(first, s.count));
     if (field.offsets.open()) field.offsets.append(start);
   }
   end_row_ = first + s.count;
-  id_offsets_.append(write_ids(s));
+  id_offsets_.append(write_ids(s, places != nullptr));
   const std::int64_t part = part_of(s.count);
   part_offsets_.append(part);
   part_counts_.append(std::int64_t{1});
@@ -72,7 +104,6 @@ void RunOutput::write_frame(const Snapshot& s) {
   updates_.append(s.update);
   last_times_[times_.rows() % run_layout::step_rows] = s.time;
   times_.write_ahead(last_times_);
-  commit_frames(frames_ + 1);
 }
 
 /// In the order that a power cut must not change: what a frame consists of; then NSteps, which
@@ -94,7 +125,7 @@ void RunOutput::set_steps(std::int64_t frames) {
 void RunOutput::flush() {
   write_log();
   write_gauges();
-  bytes_ = h5::flush_reserved(file_);
+  bytes_ = h5::flush_reserved(file_, std::exchange(longer_, false));
 }
 
 void RunOutput::sync() {

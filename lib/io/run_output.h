@@ -11,6 +11,7 @@
 #include "lib/io/h5_output.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
+#include "lib/solver/split_rows.h"
 
 namespace pbf::io_module {
 
@@ -26,6 +27,14 @@ class RunOutput {
   ~RunOutput();
   /// Appends a frame and commits it: from the return on a killed process leaves it readable.
   void write_frame(const Snapshot& snapshot);
+  /// The same in steps, for rows that are elsewhere. begin_frame() makes room for a frame, of which
+  /// `head` has no bytes and the ids 0, 1, 2 ...; `chunks` are empty in a file with compression.
+  /// There rows() writes them, in whole chunks. commit_frame() is to be called when all rows are on
+  /// the disk or written by rows().
+  FramePlaces begin_frame(const Snapshot& head);
+  void rows(std::size_t field, std::int64_t first, const FieldArray& rows);
+  void commit_frame() { commit_frames(frames_ + 1); }
+  std::uint64_t inode() const;
   /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
   void log(const LogRow& row);
   void gauges(const GaugeRow& row);
@@ -85,9 +94,11 @@ class RunOutput {
   hsize_t whole_chunks(hsize_t rows) const {
     return (rows + chunk_rows_ - 1) / chunk_rows_ * chunk_rows_;
   }
-  void check_fields(const Snapshot& snapshot) const;
+  void check_fields(const Snapshot& snapshot, bool split) const;
+  /// All of a frame but its commit. places: null, or what to fill in instead of writing rows.
+  void add_frame(const Snapshot& snapshot, FramePlaces* places);
   std::int64_t part_of(std::size_t count);
-  std::int64_t write_ids(const Snapshot& snapshot);
+  std::int64_t write_ids(const Snapshot& snapshot, bool split);
   void commit_frames(std::int64_t frames);
   void set_steps(std::int64_t frames);  // NSteps
   void write_log();
@@ -96,12 +107,14 @@ class RunOutput {
 
   h5::File file_;  // first: destroyed last
   bool gzip_, opening_ = false, closed_ = false;
+  bool longer_ = false;  // the file, since the disk has stored its size
   std::int64_t frames_ = 0, bytes_ = 0;
   std::size_t expected_;  // particles at most, from RunInfo
   ScalarType id_type_ = ScalarType::i32;
   h5::Group vtk_, steps_, pbf_;
   std::vector<Field> fields_;
   hsize_t chunk_rows_ = 1, end_row_ = 0, numbered_ = 0;  // numbered_: rows of the ids 0, 1, 2 ...
+  hsize_t frame_row_ = 0;                                // the first of the last frame
   h5::Column ids_, id_offsets_, connectivity_, points_per_part_, updates_;
   std::array<Topology, 4> topologies_;
   std::vector<std::int64_t> parts_;  // particles of each part; frames of the same number share it

@@ -1,8 +1,10 @@
 // RunOutput: going on in a file that is there, and the table of the processes that wrote it.
 #include <algorithm>
+#include <filesystem>
 
 #include "lib/base/error.h"
 #include "lib/base/own_file.h"
+#include "lib/base/part_file.h"
 #include "lib/base/text.h"
 #include "lib/io/h5_output.h"
 #include "lib/io/run_layout.h"
@@ -17,6 +19,8 @@ using h5::check;
 /// knows of; space is taken only behind that.
 h5::File open_again(const std::string& path) {
   require_own_file(path);
+  if (!wait_for_parts(std::filesystem::path(path).parent_path().string(), 10))
+    throw h5::Failure("a process of an earlier run still writes its part of it; end that process");
   h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDWR, h5::writer_access()));
   check(H5Fincrement_filesize(file, 0));
   return file;

@@ -118,7 +118,7 @@ void RunOutput::create_fields(const Snapshot& first) {
   make_ids(first.find("id")->type, 0, 0, 0);
 }
 
-void RunOutput::check_fields(const Snapshot& s) const {
+void RunOutput::check_fields(const Snapshot& s, bool split) const {
   const auto fail = [](const std::string& why) {
     throw Error(ExitCode::internal, "run file: bad snapshot: " + why);
   };
@@ -127,7 +127,7 @@ void RunOutput::check_fields(const Snapshot& s) const {
   if (!s.find("id")) fail("it has no ids");
   std::size_t k = 0;
   for (const FieldArray& f : s.fields) {
-    const std::size_t values = s.count * static_cast<std::size_t>(f.components);
+    const std::size_t values = (split ? 0 : s.count) * static_cast<std::size_t>(f.components);
     if (f.components < 1 || f.bytes.size() != values * size_of(f.type))
       fail("field " + f.name + " has " + std::to_string(f.bytes.size()) + " bytes for " +
            std::to_string(s.count) + " particles");
@@ -135,7 +135,7 @@ void RunOutput::check_fields(const Snapshot& s) const {
       if (!is_whole(f.type) || f.components != 1) fail("id is not one whole number");
       if (!fields_.empty() && f.type != id_type_)
         fail("ids are not of the type of the first frame");
-      for (std::size_t i = 0; i < s.count; ++i)
+      for (std::size_t i = 0; i < s.count && !split; ++i)
         if (f.whole(i) <= (i > 0 ? f.whole(i - 1) : -1)) fail("rows are not in id order");
       continue;
     }
@@ -167,21 +167,25 @@ std::int64_t RunOutput::part_of(std::size_t count) {
 /// The row at which the ids of a frame begin. The column begins with 0, 1, 2 ..., as far as a run
 /// has particles at most, for all frames that have these ids, and with them the vertices' points.
 /// Behind them lie the ids of each frame that has others.
-std::int64_t RunOutput::write_ids(const Snapshot& s) {
-  const auto numbers = [](hsize_t first, hsize_t end) {
-    std::vector<std::int64_t> list(end - first);
-    std::iota(list.begin(), list.end(), static_cast<std::int64_t>(first));
-    return list;
+std::int64_t RunOutput::write_ids(const Snapshot& s, bool split) {
+  const auto count_up = [this](h5::Column& column, hsize_t first, hsize_t end) {
+    for (hsize_t next = first; first < end; first = next) {  // in whole chunks
+      next = std::min(end, (first / chunk_rows_ + 1) * chunk_rows_);
+      std::vector<std::int64_t> list(next - first);
+      std::iota(list.begin(), list.end(), static_cast<std::int64_t>(first));
+      column.append(list);
+    }
   };
   const hsize_t wanted = std::max<hsize_t>(s.count, numbered_ > 0 ? 0 : expected_);
   if (const hsize_t have = connectivity_.rows(); wanted > have)
-    connectivity_.append(numbers(have, wanted));
+    count_up(connectivity_, have, wanted);
   if (wanted > numbered_ && ids_.rows() == numbered_) {
-    ids_.append(numbers(numbered_, wanted));
+    count_up(ids_, numbered_, wanted);
     numbered_ = wanted;
   }
   const FieldArray& id = *s.find("id");
-  const bool counts_up = s.count == 0 || id.whole(s.count - 1) == std::int64_t(s.count) - 1;
+  const bool counts_up =
+      s.count == 0 || split || id.whole(s.count - 1) == std::int64_t(s.count) - 1;
   if (counts_up && s.count <= numbered_) return 0;
   const hsize_t first = whole_chunks(std::max<hsize_t>(ids_.rows(), 1));
   ids_.write(first, s.count, h5::memory_type(id.type), id.bytes.data());

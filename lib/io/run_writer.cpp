@@ -35,6 +35,18 @@ struct RunWriter::Impl {
     push([=, this] { on_file(what, [&] { action(*out_); }); });
   }
 
+  /// The same, and waits for it.
+  template <class Action>
+  void now(const std::string& what, const Action& action) {
+    push([=, this] { on_file(what, [&] { action(*out_); }); });
+    wait();
+  }
+  void wait() {
+    worker_.wait();
+    rethrow();
+  }
+  std::string frame() const { return "cannot write frame " + std::to_string(frames_); }
+
   void end(const RunEnding& ending) {
     if (worker_.ended()) return;
     const auto job = [&] {
@@ -90,10 +102,32 @@ RunWriter::~RunWriter() = default;
 void RunWriter::write(Snapshot&& snapshot) {
   impl_->push(
       [i = impl_.get(), s = std::move(snapshot)] {
-        i->on_file("cannot write frame " + std::to_string(i->frames_),
-                   [&] { i->out_->write_frame(s); });
+        i->on_file(i->frame(), [&] { i->out_->write_frame(s); });
       },
       true);
+}
+FramePlaces RunWriter::begin_frame(const Snapshot& head) {
+  FramePlaces places;
+  impl_->push([&, i = impl_.get()] {
+    i->on_file(i->frame(), [&] { places = i->out_->begin_frame(head); });
+  });
+  impl_->wait();
+  return places;
+}
+void RunWriter::rows(std::size_t field, std::int64_t first, FieldArray&& rows) {
+  impl_->push(
+      [i = impl_.get(), field, first, r = std::move(rows)] {
+        i->on_file(i->frame(), [&] { i->out_->rows(field, first, r); });
+      },
+      true);
+}
+void RunWriter::commit_frame() {
+  impl_->push([i = impl_.get()] { i->on_file(i->frame(), [&] { i->out_->commit_frame(); }); });
+}
+std::uint64_t RunWriter::inode() {
+  std::uint64_t number = 0;
+  impl_->now("cannot look at the file", [&](RunOutput& out) { number = out.inode(); });
+  return number;
 }
 void RunWriter::log(const LogRow& row) {
   impl_->later("cannot write the log", [row](RunOutput& out) { out.log(row); });
@@ -102,9 +136,7 @@ void RunWriter::gauges(const GaugeRow& row) {
   impl_->later("cannot write the gauges", [row](RunOutput& out) { out.gauges(row); });
 }
 void RunWriter::sync() {
-  impl_->later("cannot write the log", [](RunOutput& out) { out.sync(); });
-  impl_->worker_.wait();
-  impl_->rethrow();
+  impl_->now("cannot write the log", [](RunOutput& out) { out.sync(); });
 }
 std::int64_t RunWriter::frames_written() const { return impl_->frames_; }
 std::int64_t RunWriter::bytes_written() const { return impl_->bytes_; }

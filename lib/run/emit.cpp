@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "lib/base/error.h"
 #include "lib/io/particle_file.h"
@@ -19,58 +20,69 @@ std::string name_of(const Scene& scene, std::size_t body) {
   return (place.empty() ? "" : place + ": ") + "bodies[" + std::to_string(body) + "]";
 }
 
-/// Refuses particles outside the domain. A particle that is outside only by rounding (a sphere that
-/// touches a wall) is put on the wall. In two dimensions every particle is put on the plane.
-void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::vector<Double3>& x) {
-  const Domain& domain = scene.domain;
-  const std::optional<double> plane = scene.plane();
-  for (std::size_t i = first; i < x.size(); ++i) {
+/// The particles of one body on their way into the scene.
+class IntoScene {
+ public:
+  IntoScene(const Scene& scene, std::size_t body) : scene_(scene), body_(body) {}
+
+  /// Refuses a particle outside the domain. One that is outside only by rounding (a sphere that
+  /// touches a wall) is put on the wall. In two dimensions it is put on the plane.
+  void hold_inside(Double3& x) {
+    const Domain& domain = scene_.domain;
     // Only particles from a file have a y of their own.
-    if (plane && scene.bodies[body].shape != Shape::file) x[i][1] = *plane;
+    if (plane_ && scene_.bodies[body_].shape != Shape::file) x[1] = *plane_;
     for (int a = 0; a < 3; ++a) {
       const double slack = 1e-9 * (domain.max[a] - domain.min[a]);
-      if (!(x[i][a] >= domain.min[a] - slack && x[i][a] <= domain.max[a] + slack))
-        bad_input(name_of(scene, body),
-                  "particle " + std::to_string(i - first) + " at " + to_text(x[i]) +
+      if (!(x[a] >= domain.min[a] - slack && x[a] <= domain.max[a] + slack))
+        bad_input(name_of(scene_, body_),
+                  "particle " + std::to_string(seen_) + " at " + to_text(x) +
                       " is outside the domain along " + "xyz"[a] + " (" + to_text(domain.min[a]) +
                       " .. " + to_text(domain.max[a]) + " m); " +
-                      (plane && a == 1 ? "with dimensions: 2 that is the slab which holds all "
-                                         "particles; give them such a y"
-                                       : "move the body or enlarge the domain"));
-      x[i][a] = std::clamp(x[i][a], domain.min[a], domain.max[a]);
+                      (plane_ && a == 1 ? "with dimensions: 2 that is the slab which holds all "
+                                          "particles; give them such a y"
+                                        : "move the body or enlarge the domain"));
+      x[a] = std::clamp(x[a], domain.min[a], domain.max[a]);
     }
-    if (plane) x[i][1] = *plane;
+    if (plane_) x[1] = *plane_;
+    ++seen_;
   }
-}
-
-/// Moves particles from index `first` on that are nearer to a wall than solver.wall_margin to that
-/// distance. Refuses moves of more than half a spacing, because layers of particles would coincide.
-void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particles& all) {
-  const double margin = s.solver.wall_margin, d = s.fluid.spacing;
-  if (!(margin > 0)) return;
-  std::size_t too_far = 0;
-  double farthest = 0;
-  for (std::size_t i = first; i < all.size(); ++i) {
+  /// Moves a particle that is nearer to a wall than solver.wall_margin to that distance.
+  void hold_off_walls(Double3& x) {
+    const double margin = scene_.solver.wall_margin, d = scene_.fluid.spacing;
+    if (!(margin > 0)) return;
     double way = 0;
-    for (int a = 0; a < 3; a += s.dimensions == 2 ? 2 : 1) {
-      double& x = all.position[i][a];
-      const double low = s.domain.min[a] + margin, high = s.domain.max[a] - margin, before = x;
-      if (x < low && !s.domain.is_open(a, false)) x = low;
-      if (x > high && !s.domain.is_open(a, true)) x = high;
-      way = std::max(way, std::fabs(x - before));
+    for (int a = 0; a < 3; a += scene_.dimensions == 2 ? 2 : 1) {
+      const double low = scene_.domain.min[a] + margin, high = scene_.domain.max[a] - margin,
+                   before = x[a];
+      if (x[a] < low && !scene_.domain.is_open(a, false)) x[a] = low;
+      if (x[a] > high && !scene_.domain.is_open(a, true)) x[a] = high;
+      way = std::max(way, std::fabs(x[a] - before));
     }
-    if (way > 1e-6 * d) ++all.put_on_margin;  // less is rounding
-    if (way > 0.5 * d * (1 + 1e-6)) ++too_far;
-    farthest = std::max(farthest, way);
+    if (way > 1e-6 * d) ++put_on_margin_;  // less is rounding
+    if (way > 0.5 * d * (1 + 1e-6)) ++too_far_;
+    farthest_ = std::max(farthest_, way);
   }
-  all.farthest_put = std::max(all.farthest_put, farthest);
-  if (too_far == 0) return;
-  bad_input(name_of(s, body),
-            std::to_string(too_far) + " particles are nearer to a wall than solver.wall_margin (" +
-                to_text(margin) + " m) by more than half of fluid.spacing, the farthest by " +
-                to_text(farthest) +
-                " m; move the body away from the walls or lower solver.wall_margin");
-}
+  /// After the last one. Refuses moves of more than half a spacing, because layers of particles
+  /// would coincide.
+  void end(Particles& all) const {
+    all.put_on_margin += put_on_margin_;
+    all.farthest_put = std::max(all.farthest_put, farthest_);
+    if (too_far_ == 0) return;
+    bad_input(name_of(scene_, body_),
+              std::to_string(too_far_) +
+                  " particles are nearer to a wall than solver.wall_margin (" +
+                  to_text(scene_.solver.wall_margin) +
+                  " m) by more than half of fluid.spacing, the farthest by " + to_text(farthest_) +
+                  " m; move the body away from the walls or lower solver.wall_margin");
+  }
+
+ private:
+  const Scene& scene_;
+  const std::size_t body_;
+  const std::optional<double> plane_ = scene_.plane();
+  std::size_t seen_ = 0, put_on_margin_ = 0, too_far_ = 0;
+  double farthest_ = 0;  // m
+};
 
 /// In two dimensions the y of a velocity must be 0. body.velocity is checked with the scene.
 void refuse_velocity_along_y(const Scene& scene, std::size_t body, const std::vector<Double3>& v) {
@@ -108,18 +120,38 @@ class FreePlaces {
   double h_, least_;
 };
 
-/// Removes the particles from `first` on that are in obstacles and returns their number.
-std::size_t drop_inside(const FreePlaces& free, std::size_t first, Particles& all) {
-  std::size_t to = first;
-  for (std::size_t i = first; i < all.size(); ++i) {
-    if (!free.has(all.position[i])) continue;
-    all.position[to] = all.position[i];
-    all.velocity[to++] = all.velocity[i];
+/// Calls take(position, velocity) for every particle in the order of ids. Returns what Particles
+/// say besides. last: frees the particles of each file after its body.
+template <class Take>
+Particles each_particle(StartPoints& points, bool last, const Take& take) {
+  const Scene& scene = points.scene();
+  const FreePlaces free(scene);
+  Particles all;
+  all.files = points.files();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    IntoScene into(scene, b);
+    std::size_t dropped = 0;
+    const auto put = [&](Double3 x, Double3 v) {
+      for (int a = 0; a < 3; ++a) v[a] += body.velocity[a];
+      into.hold_inside(x);
+      if (!free.all() && !free.has(x)) return void(++dropped);
+      into.hold_off_walls(x);
+      take(x, v);
+    };
+    if (body.shape == Shape::file) {
+      const Particles& p = points.of_file(b);
+      if (scene.dimensions == 2) refuse_velocity_along_y(scene, b, p.velocity);
+      for (std::size_t i = 0; i < p.size(); ++i) put(p.position[i], p.velocity[i]);
+      if (last) points.drop_file(b);
+    } else {
+      for_each_point(body, scene.fluid.spacing, scene.plane(),
+                     [&](const Double3& x) { put(x, Double3{}); });
+    }
+    if (!free.all()) all.in_obstacles.push_back(dropped);
+    into.end(all);
   }
-  const std::size_t dropped = all.size() - to;
-  all.position.resize(to);
-  all.velocity.resize(to);
-  return dropped;
+  return all;
 }
 
 }  // namespace
@@ -157,32 +189,35 @@ std::int64_t count_particles(const StartPoints& points) {
 }
 
 Particles emit_particles(StartPoints points) {
-  const Scene& scene = points.scene();
   const auto total = static_cast<std::size_t>(count_particles(points));
-  const FreePlaces free(scene);
-  Particles all;
-  all.files = points.files();
-  all.position.reserve(total);
-  all.velocity.reserve(total);
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    const std::size_t first = all.size();
-    if (body.shape == Shape::file) {
-      const Particles p = points.take_file(b);
-      if (scene.dimensions == 2) refuse_velocity_along_y(scene, b, p.velocity);
-      all.position.insert(all.position.end(), p.position.begin(), p.position.end());
-      all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());
-    } else {
-      for_each_point(body, scene.fluid.spacing, scene.plane(),
-                     [&](const Double3& x) { all.position.push_back(x); });
-    }
-    all.velocity.resize(all.position.size(), Double3{});
-    for (std::size_t i = first; i < all.size(); ++i)
-      for (int a = 0; a < 3; ++a) all.velocity[i][a] += body.velocity[a];
-    hold_inside(scene, b, first, all.position);
-    if (!free.all()) all.in_obstacles.push_back(drop_inside(free, first, all));
-    hold_off_walls(scene, b, first, all);
-  }
+  Particles rows;
+  rows.position.reserve(total);
+  rows.velocity.reserve(total);
+  Particles all = each_particle(points, true, [&](const Double3& x, const Double3& v) {
+    rows.position.push_back(x);
+    rows.velocity.push_back(v);
+  });
+  all.position = std::move(rows.position);
+  all.velocity = std::move(rows.velocity);
+  return all;
+}
+
+Particles emit_in_pieces(StartPoints& points, std::int64_t most, const TakeParticles& take) {
+  Particles piece;
+  std::int64_t first = 0;
+  const auto give = [&] {
+    const auto n = std::int64_t(piece.size());
+    if (take && n > 0) take(first, std::exchange(piece, {}));
+    first += n;
+    piece.position.clear();
+    piece.velocity.clear();
+  };
+  Particles all = each_particle(points, false, [&](const Double3& x, const Double3& v) {
+    piece.position.push_back(x);
+    piece.velocity.push_back(v);
+    if (std::int64_t(piece.size()) == most) give();
+  });
+  give();
   return all;
 }
 

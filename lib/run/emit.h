@@ -38,8 +38,8 @@ class StartPoints {
   }
   const Scene& scene() const { return scene_; }
   const Particles& of_file(std::size_t body) const { return of_files_[body]; }
-  /// Moves the particles of a file out of this object.
-  Particles take_file(std::size_t body) { return std::move(of_files_[body]); }
+  /// Frees the particles of a file.
+  void drop_file(std::size_t body) { of_files_[body] = {}; }
   /// Those of bodies, which were opened here, then those of motions, which read_motions() has read.
   const std::vector<SceneFile>& files() const { return files_; }
 
@@ -63,6 +63,9 @@ std::int64_t count_particles(const StartPoints& points);
 /// clamp them and turn the move into a velocity. Throws Error(bad_input) for a particle outside the
 /// domain, or if a larger move is needed.
 Particles emit_particles(StartPoints points);
+/// The same in pieces of at most `most` particles, without memory for all; those of files stay.
+/// Returns what Particles say besides. take may be null.
+Particles emit_in_pieces(StartPoints& points, std::int64_t most, const TakeParticles& take);
 
 inline std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
   return count_particles(StartPoints(scene, scene_dir));

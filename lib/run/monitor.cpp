@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lib/solver/split_rows.h"
+
 namespace pbf::run_module {
 
 Monitor::Monitor(const Scene& scene, const Plan& plan, Solver& solver, Record record,
@@ -150,7 +152,10 @@ void Monitor::timed(const std::function<void()>& action) {
 }
 
 void Monitor::go_back() {
-  if (solver_.updates() != guard_->last_good().update)
+  if (solver_.updates() == guard_->last_good().update) return;
+  if (SplitRows* split = solver_.split())
+    split->go_back();
+  else
     solver_.set_state(solver_.state(StateOf::kept));
 }
 

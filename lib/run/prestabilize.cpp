@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
 #include "lib/scene/vector3.h"
+#include "lib/solver/split_rows.h"
 
 namespace pbf::run_module {
 namespace {
@@ -19,18 +21,22 @@ constexpr double kHarmless = 1e-5;     // share of the energy scale
 constexpr double kProgress = 0.75;     // largest useful ratio of the kicks after 2n and n steps
 constexpr double kStill = 1e-6;        // h, a negligible move if all is at rest
 
-/// Displacements from `a` to `b`, h.
-struct Moves {
-  double squares = 0, farthest = 0;
-  Moves(const std::vector<double>& a, const std::vector<double>& b) {
-    for (std::size_t k = 0; k < a.size(); k += 3) {
-      double squared = 0;
-      for (std::size_t c = k; c < k + 3; ++c) squared += (b[c] - a[c]) * (b[c] - a[c]);
-      squares += squared;
-      farthest = std::max(farthest, squared);
-    }
-    farthest = std::sqrt(farthest);
+/// Displacements from one call to the next, h. In the first one there are none.
+class Course {
+ public:
+  explicit Course(Solver& solver) : solver_(solver) { next(); }
+  Moves next() {
+    if (SplitRows* split = solver_.split()) return split->moves();
+    std::vector<double> to = solver_.state(StateOf::positions).position;
+    Moves moves;
+    if (!from_.empty()) moves.add(from_, to);
+    from_ = std::move(to);
+    return moves;
   }
+
+ private:
+  Solver& solver_;
+  std::vector<double> from_;
 };
 
 /// The kick after a number of steps.
@@ -65,7 +71,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
   p.kick = energy(n * std::pow(2 * p.before.compression_rms, 2));
   if (p.relieved() || p.before.non_finite > 0) return p;
-  std::vector<double> from = solver.state(StateOf::positions).position;
+  Course positions(solver);
   std::vector<Point> course;
   const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
   const std::int64_t most = std::max<std::int64_t>(kMostIterations / iterations, 32);
@@ -73,9 +79,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   for (int round = 1; p.steps < most; round = std::min(p.steps, kRound)) {
     solver.step(round, {.without_time = 1.0});
     p.steps += round;
-    std::vector<double> to = solver.state(StateOf::positions).position;
-    const Moves moves(from, to);
-    from = std::move(to);
+    const Moves moves = positions.next();
     p.moved += moves.farthest * s.fluid.smoothing_ratio;
     p.kick = energy(moves.squares / (round * round));  // for the mean step of the round
     if (progress)

@@ -46,10 +46,18 @@ Next Reporter::at(Session& session) {
 
 void Reporter::end(Session& session) {
   if (!run_.scene.domain.open.empty()) {
-    const std::vector<double> x = run_.solver.state(StateOf::positions).position;
     const Double3 origin = run_.scene.origin();
     const double h = run_.scene.h();
-    count_outside(x.size() / 3, [&](std::size_t i, int a) { return origin[a] + h * x[3 * i + a]; });
+    const auto count = [&](std::int64_t first, const SolverState& s) {
+      const std::vector<double>& x = s.position;
+      count_outside(first, x.size() / 3,
+                    [&](std::size_t i, int a) { return origin[a] + h * x[3 * i + a]; });
+    };
+    constexpr std::int64_t kPiece = std::int64_t{1} << 20;
+    if (SplitRows* split = run_.solver.split())
+      split->state_in_pieces(StateOf::positions, kPiece, {[](SolverState&&) {}, count});
+    else
+      count(0, run_.solver.state(StateOf::positions));
   }
   all_ = run_.start.warnings;
   const bool finished = !monitor_.event() && session.update() == run_.schedule.updates;
@@ -70,37 +78,36 @@ void Reporter::follow(const Diagnostics& m) {
   compressed_ += rest == 0 ? every : rest;
 }
 
+/// In pieces from row 0 on.
 template <class Coordinate>
-void Reporter::count_outside(std::size_t n, const Coordinate& coordinate) {
-  left_ = 0;
-  seen_ = std::int64_t(n);
-  farthest_ = 0;
-  std::vector<std::int64_t> through(run_.scene.domain.open.size());
+void Reporter::count_outside(std::int64_t first, std::size_t n, const Coordinate& coordinate) {
+  const Domain& domain = run_.scene.domain;
+  if (first == 0) left_ = seen_ = 0, farthest_ = 0, through_.assign(domain.open.size(), 0);
+  seen_ += std::int64_t(n);
   for (std::size_t i = 0; i < n; ++i) {
     bool out = false;
-    for (std::size_t f = 0; f < through.size(); ++f) {
-      const std::string& face = run_.scene.domain.open[f];
+    for (std::size_t f = 0; f < through_.size(); ++f) {
+      const std::string& face = domain.open[f];
       const int a = face[0] - 'x';
       const double x = coordinate(i, a);
-      const double beyond =
-          face.ends_with("min") ? run_.scene.domain.min[a] - x : x - run_.scene.domain.max[a];
+      const double beyond = face.ends_with("min") ? domain.min[a] - x : x - domain.max[a];
       // More than the rounding of a float in m.
       if (!(beyond > 1e-3 * run_.scene.fluid.spacing)) continue;
       out = true;
-      ++through[f];
+      ++through_[f];
       farthest_ = std::max(farthest_, beyond);
     }
     left_ += out;
   }
   faces_.clear();
-  for (std::size_t f = 0; f < through.size(); ++f)
-    if (through[f] > 0) faces_ += (faces_.empty() ? "" : ", ") + run_.scene.domain.open[f];
+  for (std::size_t f = 0; f < through_.size(); ++f)
+    if (through_[f] > 0) faces_ += (faces_.empty() ? "" : ", ") + domain.open[f];
 }
 
-void Reporter::look_outside(const Snapshot& s) {
-  const FieldArray* x = s.find("position");
-  if (run_.scene.domain.open.empty() || !x) return;
-  count_outside(s.count, [&](std::size_t i, int a) { return x->number(3 * i + a); });
+void Reporter::look_outside(std::int64_t first, const FieldArray& position) {
+  if (run_.scene.domain.open.empty()) return;
+  count_outside(first, position.bytes.size() / (3 * size_of(position.type)),
+                [&](std::size_t i, int a) { return position.number(3 * i + std::size_t(a)); });
 }
 
 std::vector<Warning> Reporter::found(bool end) const {

@@ -8,6 +8,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
+#include "lib/exec/ranks/world.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 #include "lib/io/run_path.h"
@@ -78,7 +79,7 @@ class Finder {
       point_.notes.push_back("DONE is there, but " + doubt);
     }
     point_.started = true;
-    point_.saved = read_checkpoint(folder_.path(), point_.notes);
+    point_.saved = read_checkpoint(folder_.path(), point_.notes, !world());
     check_checkpoint(plan);
     if (point_.saved && point_.saved->state.updates > schedule_.updates) {
       leave_as_it_is();
@@ -162,8 +163,9 @@ class Finder {
                       "scene in it and whose results are others") +
           kOtherwise);
     refuse_other("checkpoint.h5", s.scene, s.files);
-    if (!fits(s.state, plan.capacity, changes_rows(scene_)) ||
-        s.state.precision != scene_.precision)
+    const bool fitting = s.path.empty() ? fits(s.state, plan.capacity, changes_rows(scene_))
+                                        : s.particles == plan.particles;
+    if (!fitting || s.state.precision != scene_.precision)
       throw Error(ExitCode::io, folder_.file("checkpoint.h5") +
                                     ": holds other particles or another precision "
                                     "than the scene; remove it to start again");

@@ -10,7 +10,6 @@
 #include "lib/base/output_file.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
-#include "lib/exec/make_solver.h"
 #include "lib/io/particle_file.h"
 #include "lib/io/run_path.h"
 #include "lib/program/threads.h"
@@ -133,7 +132,14 @@ RunResult simulate(RunParts& run) {
     for (const std::string& text : run.start.notes) note(text);
   for (const std::string& text : rounded_times(run.scene)) note(text);
   if (from.saved) {
-    run.solver.set_state(from.saved->state);
+    if (SplitRows* split = run.solver.split()) {
+      const CheckpointRows rows(*from.saved);
+      split->set_state_in_pieces(
+          {from.saved->state, from.saved->particles,
+           [&](std::int64_t first, std::int64_t n) { return rows.read(first, n); }});
+    } else {
+      run.solver.set_state(from.saved->state);
+    }
     note(fmt::format("goes on from the checkpoint of update {}", from.update()));
   } else {
     run.clock.mark("init");
@@ -226,7 +232,7 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
              " while the start settled; nothing is saved, the same command begins again");
     return {control.why_stop(), 0};
   }
-  const auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
+  const auto solver = new_solver(start, start.scene(), start.plan);
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;
 #ifdef PBF_HAS_RENDER

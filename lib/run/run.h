@@ -12,6 +12,7 @@
 #include "lib/program/energy_at_rest.h"
 #include "lib/run/monitor.h"
 #include "lib/run/resume.h"
+#include "lib/run/split_frames.h"
 #include "lib/run/start.h"
 #ifdef PBF_HAS_RENDER
 #include "lib/render/renderer.h"
@@ -55,8 +56,8 @@ class Reporter : public Observer {
   void end(Session& session) override;
   /// Must be given every scheduled measurement, in order.
   void follow(const Diagnostics& due);
-  /// Counts the particles beyond open faces.
-  void look_outside(const Snapshot& snapshot);
+  /// Counts the particles beyond open faces, in pieces from row 0 on.
+  void look_outside(std::int64_t first, const FieldArray& position);
   /// Updates so far whose next measurement showed a mean compression above kNoLiquid.
   std::int64_t compressed_updates() const { return compressed_; }
   bool has_told() const { return !told_.empty(); }
@@ -67,7 +68,7 @@ class Reporter : public Observer {
 
  private:
   template <class Coordinate>
-  void count_outside(std::size_t n, const Coordinate& coordinate);
+  void count_outside(std::int64_t first, std::size_t n, const Coordinate& coordinate);
   std::vector<Warning> found(bool end) const;
 
   RunParts& run_;
@@ -76,8 +77,9 @@ class Reporter : public Observer {
   std::map<std::string, std::string> told_;  // kind, text
   std::vector<Warning> all_;
   std::int64_t compressed_ = 0, left_ = 0, seen_ = 0;
-  double farthest_ = 0;  // m
-  std::string faces_;    // open faces through which particles left
+  double farthest_ = 0;                // m
+  std::vector<std::int64_t> through_;  // each open face
+  std::string faces_;                  // open faces through which particles left
 };
 
 /// Records measurements: rows of the log, lines of JSON, contents of a checkpoint.
@@ -113,18 +115,22 @@ class Frames : public Observer {
   Next at(Session& session) override;
   void end(Session& session) override;
   void close() noexcept override;
+  /// Waits until all frames have been given to the writer.
+  void finish();
   /// Gives a pending copy to the writer and the pictures. On a device the copy runs in parallel
   /// with the updates of one call of Solver::step(); call this after that call.
   void hand_over();
 
  private:
   void start(std::int64_t update, bool last);
+  void write_split(ScalarType type);
 
   RunParts& run_;
   Reporter& reporter_;
-  std::vector<std::string> fields_;  // downloaded
-  std::string extra_;                // downloaded for the pictures, not written
-  std::int64_t last_ = -1;           // update of the last frame
+  std::vector<std::string> fields_;     // downloaded
+  std::string extra_;                   // downloaded for the pictures, not written
+  std::unique_ptr<SplitFrames> split_;  // on several ranks: writes frames
+  std::int64_t last_ = -1;              // update of the last frame
   std::future<Snapshot> copy_;
   bool write_ = false, draw_ = false;  // uses of the pending copy
   std::int64_t picture_ = 0;           // number in the file name

@@ -101,18 +101,47 @@ void Frames::start(std::int64_t u, bool last) {
   if (write && run_.schedule.frames_until(u) <= run_.from.frames) write = false;
   if (!write && !draw) return;
   const bool wide = run_.scene.output && run_.scene.output->precision == Precision::dbl;
+  const ScalarType type = wide ? ScalarType::f64 : ScalarType::f32;
   hand_over();
-  copy_ = run_.solver.download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
+  if (write && run_.solver.split()) write_split(type), write = false;
+  if (!write && !draw) return;
+  copy_ = run_.solver.download(fields_, type);
   write_ = write;
   draw_ = draw;
   picture_ = run_.schedule.picture_number(u);
 }
 
+void Frames::write_split(ScalarType type) {
+  run_.clock.begin();
+  if (!split_)
+    split_ = std::make_unique<SplitFrames>(
+        *run_.solver.split(), *run_.writer, run_.folder.file(kRunFile),
+        [&](const std::string& text) { run_.control.log.note("pbf: " + text); });
+  split_->end(true);
+  run_.clock.mark("write");
+  const Snapshot head = run_.solver.split()->hold(run_.scene.output->fields, type);
+  run_.clock.begin();  // the solver has recorded its part
+  TakeRows look = [&](std::int64_t first, const FieldArray& x) {
+    reporter_.look_outside(first, x);
+  };
+  if (run_.scene.domain.open.empty()) look = nullptr;
+  split_->begin(head, look);
+  run_.clock.mark("write");
+}
+
+void Frames::finish() {
+  hand_over();
+  run_.clock.begin();
+  if (split_) split_->end(true);
+  run_.clock.mark("write");
+}
+
 void Frames::hand_over() {
+  if (split_) split_->end(false);
   if (!copy_.valid()) return;
   Snapshot snapshot = copy_.get();
   run_.clock.begin();
-  reporter_.look_outside(snapshot);
+  reporter_.look_outside(0, *snapshot.find("position"));
 #ifdef PBF_HAS_RENDER
   if (draw_) {
     run_.pictures->draw(snapshot, picture_);
@@ -128,7 +157,7 @@ void Frames::hand_over() {
 
 void Frames::end(Session& session) {
   start(session.update(), true);
-  hand_over();
+  finish();
 #ifdef PBF_HAS_RENDER
   if (!run_.pictures) return;
   run_.clock.begin();
@@ -140,6 +169,7 @@ void Frames::end(Session& session) {
 }
 
 void Frames::close() noexcept {
+  split_.reset();
 #ifdef PBF_HAS_RENDER
   run_.pictures.reset();
 #endif
@@ -169,7 +199,7 @@ std::string Saving::why_stop() const {
 /// Writes all earlier output to disk before the checkpoint. Returns false, and saves nothing, if
 /// the guard rejects the state, since no run could continue from it.
 bool Saving::save() {
-  frames_.hand_over();
+  frames_.finish();
   if (!monitor_.state_is_good()) return false;
   run_.clock.begin();
 #ifdef PBF_HAS_RENDER
@@ -178,11 +208,19 @@ bool Saving::save() {
   if (run_.writer) run_.writer->sync();
   SavedRun saved = rows_.due();
   saved.first = monitor_.first();
-  saved.state = monitor_.goes_back() ? run_.solver.state(StateOf::kept) : run_.solver.state();
-  saved.particles = std::int64_t(saved.state.id.size());
   if (monitor_.guard()) saved.released = monitor_.guard()->released();
   saved.steps = monitor_.steps();
-  write_checkpoint(run_.folder.path(), saved);
+  const StateOf which = monitor_.goes_back() ? StateOf::kept : StateOf::present;
+  if (SplitRows* split = run_.solver.split()) {
+    saved.particles = run_.plan.particles;
+    write_checkpoint(run_.folder.path(), saved, [&](const StateSink& to) {
+      split->state_in_pieces(which, kCheckpointRows, to);
+    });
+  } else {
+    saved.state = run_.solver.state(which);
+    saved.particles = std::int64_t(saved.state.id.size());
+    write_checkpoint(run_.folder.path(), saved);
+  }
   run_.clock.mark("write");
   since_save_.reset();
   return true;

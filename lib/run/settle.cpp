@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "lib/base/error.h"
-#include "lib/exec/make_solver.h"
+#include "lib/exec/ranks/world.h"
 #include "lib/program/schedule.h"
 #include "lib/program/settling.h"
 #include "lib/run/guard.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
 #include "lib/scene/vector3.h"
+#include "lib/solver/split_rows.h"
 
 namespace pbf::run_module {
 namespace {
@@ -46,6 +48,45 @@ double move_to(const std::vector<double>& position, const Scene& s, std::vector<
   return farthest;
 }
 
+/// Particles at rest, in place of those of `start`.
+Start resting(const Start& start) {
+  Start rest;
+  rest.particles = start.particles;
+  std::ranges::fill(rest.particles.velocity, Double3{});
+  if (!start.pieces) return rest;
+  rest.pieces = [all = start.pieces](const TakeParticles& take) {
+    all([&](std::int64_t first, Particles&& piece) {
+      std::ranges::fill(piece.velocity, Double3{});
+      take(first, std::move(piece));
+    });
+  };
+  return rest;
+}
+/// The particles of the start where the solver has left them, and their farthest way, m.
+double move_all(Start& start, std::unique_ptr<Solver> solver) {
+  if (!start.pieces)
+    return move_to(solver->state(StateOf::positions).position, start.scene(),
+                   start.particles.position);
+  solver->split()->moves();
+  solver.reset();  // leaves its positions on the ranks
+  const auto move = [n = start.plan.particles, s = std::make_shared<const Scene>(start.scene())](
+                        std::int64_t first, Particles& piece) {
+    return move_to(left_positions(n, first, first + std::int64_t(piece.size())), *s,
+                   piece.position);
+  };
+  double farthest = 0;
+  start.pieces([&](std::int64_t first, Particles&& piece) {
+    farthest = std::max(farthest, move(first, piece));
+  });
+  start.pieces = [all = start.pieces, move](const TakeParticles& take) {
+    all([&](std::int64_t first, Particles&& piece) {
+      move(first, piece);
+      take(first, std::move(piece));
+    });
+  };
+  return farthest;
+}
+
 }  // namespace
 
 bool settle(Start& start, const std::function<void(const std::string&)>& progress,
@@ -54,9 +95,8 @@ bool settle(Start& start, const std::function<void(const std::string&)>& progres
   if (!scene.settle) return true;
   const Scene s = settling_scene(scene);
   const Plan plan = make_plan(s, start.plan.particles, start.plan.start);
-  Particles resting = start.particles;
-  std::ranges::fill(resting.velocity, Double3{});
-  const std::unique_ptr<Solver> solver = make_solver(s, plan, std::move(resting));
+  Start rest = resting(start);
+  std::unique_ptr<Solver> solver = new_solver(rest, s, plan);
   prestabilize(*solver, s, plan, progress);
   const double scale = energy_scale(solver->diagnose(), s, plan);
   const std::int64_t updates = make_schedule(s).updates;
@@ -67,8 +107,7 @@ bool settle(Start& start, const std::function<void(const std::string&)>& progres
                 fmt::format("settle: {} particles are not finite after {:g} s before time 0; does "
                             "the scene run without settle? Give a shorter time.step",
                             m.non_finite, s.time.end));
-  const double way =
-      move_to(solver->state(StateOf::positions).position, scene, start.particles.position);
+  const double way = move_all(start, std::move(solver));
   start.notes.push_back(fmt::format(
       "start: settled for {:g} s before time 0, in {} updates; its particles moved by up to {:.3g} "
       "m, and had {:.2g} J of kinetic energy and a mean compression of {:.2g} % at the end",

@@ -1,11 +1,13 @@
 #include "lib/run/start.h"
 
 #include <fmt/core.h>
+#include <memory>
 #include <utility>
 
 #include "lib/base/error.h"
 #include "lib/base/machine.h"
 #include "lib/exec/make_solver.h"
+#include "lib/exec/ranks/world.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/settle.h"
@@ -13,6 +15,8 @@
 
 namespace pbf::run_module {
 namespace {
+
+constexpr std::int64_t kStartRows = 1 << 16;  // particles of a piece
 
 std::vector<std::string> notes_of(const Particles& p, const Scene& scene) {
   std::vector<std::string> notes;
@@ -36,7 +40,9 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
   Start start{std::move(loaded)};
   const Scene& scene = start.scene();
   const std::size_t available = available_memory();  // without the particles, which the plan counts
-  StartPoints points(scene, start.loaded.folder);
+  const auto own = std::make_shared<const Scene>(scene);  // points outlive `start`
+  const auto all = std::make_shared<StartPoints>(*own, start.loaded.folder);
+  StartPoints& points = *all;
   const std::int64_t particles = count_particles(points);
   if (options.when_read) options.when_read();
   const auto plan = [&](StartNeighbors neighbors) {
@@ -48,7 +54,13 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
   if (options.warnings) start.warnings = scene_warnings(points, particles);
   if (options.strict && !start.warnings.empty())
     throw Error(ExitCode::difference, "--strict: " + warning_lines(start.warnings));
-  if (options.particles) start.particles = emit_particles(std::move(points));
+  if (options.particles && !world()) start.particles = emit_particles(std::move(points));
+  if (options.particles && world()) {
+    start.particles = emit_in_pieces(points, kStartRows, nullptr);
+    start.pieces = [own, all](const TakeParticles& take) {
+      emit_in_pieces(*all, kStartRows, take);
+    };
+  }
   start.notes = notes_of(start.particles, scene);
   return start;
 }
@@ -60,9 +72,14 @@ Start prepare(const Scene& scene, const std::string& folder, const PrepareOption
   return prepare(std::move(loaded), options);
 }
 
+std::unique_ptr<Solver> new_solver(Start& start, const Scene& scene, const Plan& plan) {
+  return world() ? make_ranked_solver(scene, plan, start.pieces)
+                 : make_solver(scene, plan, std::move(start.particles));
+}
+
 std::unique_ptr<Solver> solver_of(Start& start) {
   settle(start);
-  auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
+  auto solver = new_solver(start, start.scene(), start.plan);
   prestabilize(*solver, start.scene(), start.plan);
   return solver;
 }

@@ -31,7 +31,8 @@ struct PrepareOptions {
 struct Start {
   LoadedScene loaded;
   Plan plan{};
-  Particles particles{};
+  Particles particles{};    ///< on several ranks without positions and velocities
+  ParticlePieces pieces{};  ///< on several ranks: these
   std::vector<Warning> warnings{};
   std::vector<std::string> notes{};  ///< changes to the particles, for the log
   const Scene& scene() const { return loaded.scene; }
@@ -44,6 +45,11 @@ struct Start {
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
 /// The same for a scene without a file; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
+
+/// A solver of the particles of a start, which are moved into it, or of those on all ranks. scene,
+/// plan: of the start, or others of the same particles. Throws as make_solver() and
+/// make_ranked_solver() do.
+std::unique_ptr<Solver> new_solver(Start& start, const Scene& scene, const Plan& plan);
 
 /// A solver before its first update, after settle() and prestabilize(). The particles are moved
 /// into it.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "lib/scene/scene.h"
@@ -20,5 +22,10 @@ struct Particles {
   std::vector<SceneFile> files;  ///< that were read: of bodies in their order, then of motions
   std::size_t size() const { return position.size(); }
 };
+
+/// Gives initial particles in pieces, in the order of ids, in each call from the first one on:
+/// calls take(id of the first, particles), whose `ids` are empty. Null: there are none.
+using TakeParticles = std::function<void(std::int64_t first, Particles&& piece)>;
+using ParticlePieces = std::function<void(const TakeParticles& take)>;
 
 }  // namespace pbf::scene_module

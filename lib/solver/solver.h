@@ -62,6 +62,7 @@ enum class StateOf { present, positions, kept };
 enum class Interval { goes_on, ends };
 
 class Inspection;
+class SplitRows;
 
 /// One simulation. Two solvers may live in one process. Errors are thrown as Error.
 class Solver {
@@ -90,6 +91,8 @@ class Solver {
   virtual std::int64_t updates() const = 0;  ///< done so far
   /// Access for verification; null if the solver has none.
   virtual Inspection* inspection() { return nullptr; }
+  /// Access to rows that are on several ranks (lib/solver/split_rows.h); null if all are here.
+  virtual SplitRows* split() { return nullptr; }
 };
 
 /// Examines the results of every pass of an update. About ten times slower than step(1), with the

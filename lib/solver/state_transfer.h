@@ -160,41 +160,45 @@ class SavedState {
   }
   template <class C>
   void save(C& c) {
-    make_room(c);
-    copy(c, [&](const FieldInfo& f, auto& saved) -> CopyPass::Part {
-      return {c.bytes_of(f), saved.data(), std::int64_t(saved.bytes())};
+    make_room(c, std::size_t(c.capacity()));
+    copy(c, [&](std::size_t k) -> CopyPass::Part {
+      return {c.bytes_of(*c.plan.program.state[k]), copies_[k].data(), used_[k]};
     });
   }
   /// The rows of a rank become the first of the copy. now: what it has then, for field::row_state.
   template <class C>
   void save_rows(C& c, const RowRange& own, const RowState& now) {
-    make_room(c);
+    make_room(c, std::size_t(own.last - own.first));
     for (std::size_t k = 0; k < copies_.size(); ++k) {
       const FieldInfo& f = *c.plan.program.state[k];
-      const auto row = std::size_t(f.bytes(C::precision));
-      const std::size_t first = f.is_per_particle() ? std::size_t(own.first) : 0;
-      const std::size_t rows =
-          f.is_per_particle() ? std::size_t(own.last - own.first) : c.kept_rows(f);
+      const std::size_t first =
+          f.is_per_particle() ? std::size_t(own.first) * std::size_t(f.bytes(C::precision)) : 0;
       if (&f == &field::row_state)
         c.exec.to_device(&now, 1, reinterpret_cast<RowState*>(copies_[k].data()));
       else
-        c.exec.copy(c.bytes_of(f) + first * row, copies_[k].data(), rows * row);
+        c.exec.copy(c.bytes_of(f) + first, copies_[k].data(), std::size_t(used_[k]));
     }
   }
   template <class C>
   void restore(C& c) {
-    copy(c, [&](const FieldInfo& f, auto& saved) -> CopyPass::Part {
-      return {saved.data(), c.bytes_of(f), std::int64_t(saved.bytes())};
+    copy(c, [&](std::size_t k) -> CopyPass::Part {
+      return {copies_[k].data(), c.bytes_of(*c.plan.program.state[k]), used_[k]};
     });
   }
 
  private:
+  /// rows: so many are copied of the fields of particles. Arrays have room for many more, which takes
+  /// no memory on the host until it is written.
   template <class C>
-  void make_room(C& c) {
+  void make_room(C& c, std::size_t rows) {
     const auto& state = c.plan.program.state;
     copies_.resize(state.size());
-    for (std::size_t k = 0; k < state.size(); ++k)
-      copies_[k].resize(c.kept_rows(*state[k]) * std::size_t(state[k]->bytes(C::precision)));
+    used_.resize(state.size());
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      const auto row = std::size_t(state[k]->bytes(C::precision)), all = c.kept_rows(*state[k]);
+      copies_[k].resize(all * row);
+      used_[k] = std::int64_t((state[k]->is_per_particle() ? rows : all) * row);
+    }
   }
   /// Copies all fields in one launch, because a run with a guard does so at every measurement.
   template <class C, class PartOf>
@@ -207,14 +211,15 @@ class SavedState {
       longest = 0;
     };
     for (std::size_t k = 0; k < copies_.size(); ++k) {
-      pass.part[pass.parts++] = part_of(*c.plan.program.state[k], copies_[k]);
-      longest = std::max(longest, std::int64_t(copies_[k].bytes()));
+      pass.part[pass.parts++] = part_of(k);
+      longest = std::max(longest, used_[k]);
       if (pass.parts == CopyPass::most) launch();
     }
     if (pass.parts > 0) launch();
   }
 
   std::vector<typename Exec::template Buffer<char>> copies_;
+  std::vector<std::int64_t> used_;  ///< bytes of each copy that hold something
 };
 
 /// s, by how much the velocities are earlier than the positions, as far as the scheme knows: half

@@ -151,10 +151,8 @@ class Stepper {
     s.position = downloaded(c_, field::position, c_.bytes_of(field::position), std::size_t(n),
                             c_.order_of_ids(c_.ids(), n));
     if constexpr (has_ranks)
-      if (c_.exec.rows()) {  // not all particles
-        const std::vector<int> own = ids();
-        s.id.assign(own.begin(), own.end());
-      }
+      if (c_.exec.rows())  // not all particles
+        for (const int id : ids()) s.id.push_back(id);
     return s;
   }
   SolverState state() {

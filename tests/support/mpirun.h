@@ -16,15 +16,21 @@ inline bool has_mpi() {
 }
 /// Open MPI, also for root in a container, with more ranks than cores, of which none waits on a
 /// core.
-inline Process start_ranks(int ranks, const Args& args, const Scratch& folder,
-                           const Args& more_environment = {}) {
+inline Process start_mpirun(const Args& args, const Scratch& folder,
+                            const Args& more_environment = {}) {
   Args environment = {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
                       "OMPI_MCA_mpi_yield_when_idle=1", "OMPI_MCA_rmaps_base_oversubscribe=1",
                       "OMPI_MCA_btl_vader_single_copy_mechanism=none"};
   environment.insert(environment.end(), more_environment.begin(), more_environment.end());
-  Args words = {"/usr/bin/env", "mpirun", "-n", std::to_string(ranks), PBF_BINARY};
+  Args words = {"/usr/bin/env", "mpirun"};
   words.insert(words.end(), args.begin(), args.end());
   return Process::program(words, folder.path(), environment);
+}
+inline Process start_ranks(int ranks, const Args& args, const Scratch& folder,
+                           const Args& more_environment = {}) {
+  Args words = {"-n", std::to_string(ranks), PBF_BINARY};
+  words.insert(words.end(), args.begin(), args.end());
+  return start_mpirun(words, folder, more_environment);
 }
 inline Outcome on_ranks(int ranks, const Args& args, const Scratch& folder) {
   return start_ranks(ranks, args, folder).wait();

@@ -34,8 +34,10 @@ struct RankScene {
     particles = emit_particles(std::move(points));
   }
   Particles part(const Communicator& c) const {
-    return part_of(particles,
-                   ids_of_ranks(particles, scene, plan, c.size())[std::size_t(c.rank())]);
+    FirstRanks first(scene, plan, c.size());
+    first.count(particles);
+    first.cut();
+    return part_of(particles, first.rows_of_ranks(particles)[std::size_t(c.rank())]);
   }
 };
 

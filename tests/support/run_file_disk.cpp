@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "tests/support/run_file_samples.h"
+#include "tests/support/split_frame.h"
 
 namespace {
 
@@ -135,13 +136,16 @@ std::vector<DiskOperation> WatchedDisk::operations() const {
 }
 
 std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int64_t frames,
-                                               bool gzip) {
+                                               bool gzip, bool split) {
   WatchedDisk disk(path);
-  RunWriter writer(path, changing_info(), gzip);
+  RunWriter writer(path, split ? sample_info(kSplitRows) : changing_info(), gzip);
   disk.mark(0);
   for (std::int64_t k = 0; k < frames; ++k) {
     for (int row = 0; row < 10; ++row) writer.log(sample_row(10 * k + row));
-    writer.write(changing_sample(k));
+    if (split)
+      write_split(writer, path, split_sample(k), 3);
+    else
+      writer.write(changing_sample(k));
     while (writer.frames_written() <= k) std::this_thread::yield();
     disk.mark(k + 1);
   }

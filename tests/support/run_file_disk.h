@@ -31,7 +31,8 @@ class WatchedDisk {
 
 /// What writing a run file of so many frames, changing_sample(k), with 10 rows of the log before
 /// each does to the disk. The mark k stands where the first k frames have been reported.
+/// split: the rows of split_sample(k) are written by three ranks, or in pieces with gzip.
 std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int64_t frames,
-                                               bool gzip);
+                                               bool gzip, bool split = false);
 
 }  // namespace pbf::test

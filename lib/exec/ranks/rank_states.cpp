@@ -1,9 +1,9 @@
 #include "lib/exec/ranks/rank_states.h"
 
+#include <iterator>
 #include <numeric>
 
 #include "lib/exec/ranks/packing.h"
-#include "lib/exec/ranks/slabs.h"
 #include "lib/program/exchanges.h"
 #include "lib/program/features/dissipation.h"
 
@@ -70,104 +70,86 @@ SolverState state_of(const std::vector<char>& packed) {
   return s;
 }
 
-void WholeState::add(const SolverState& part) {
-  const auto n = std::size_t(plan_.particles);
+namespace {
+
+bool of_particles(const StoredField& f, const Plan& plan) {
+  const FieldInfo* info = field_of(plan, f.name);
+  return info && info->is_per_particle();
+}
+StoredField without_values(const StoredField& f) { return {f.name, f.real, f.numbers, {}}; }
+SolverState without_rows(const SolverState& s) {
+  SolverState out;
+  out.precision = s.precision, out.updates = s.updates, out.steps = s.steps;
+  return out;
+}
+/// Numbers of the rows from `first` to `last` - 1.
+template <class T>
+std::vector<T> cut_out(const std::vector<T>& all, std::size_t first, std::size_t last,
+                       std::size_t numbers) {
+  if (all.empty()) return {};  // has none of them, as velocities of StateOf::positions
+  return {all.begin() + std::ptrdiff_t(first * numbers),
+          all.begin() + std::ptrdiff_t(last * numbers)};
+}
+template <class T>
+std::vector<T> picked_rows(const std::vector<T>& all, const std::vector<int>& rows,
+                           std::size_t numbers) {
+  std::vector<T> part;
+  part.reserve(rows.size() * numbers);
+  for (const int i : rows) {
+    const auto row = all.begin() + std::ptrdiff_t(std::size_t(i) * numbers);
+    part.insert(part.end(), row, row + std::ptrdiff_t(numbers));
+  }
+  return part;
+}
+/// Row k of `from` becomes row ids[k] - first of `to`.
+template <class T>
+void place(const std::vector<T>& from, const std::vector<std::int64_t>& ids, std::int64_t first,
+           std::size_t numbers, std::vector<T>& to) {
+  for (std::size_t k = 0; k < ids.size() && !from.empty(); ++k)
+    std::copy_n(from.begin() + std::ptrdiff_t(k * numbers), numbers,
+                to.begin() + std::ptrdiff_t(std::size_t(ids[k] - first) * numbers));
+}
+template <class T>
+void join(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+SolverState head_of(const SolverState& s, const Plan& plan) {
+  SolverState head = without_rows(s);
+  for (const StoredField& f : s.fields)
+    head.fields.push_back(of_particles(f, plan) ? without_values(f) : f);
+  return head;
+}
+
+void WholeHead::add(const SolverState& part) {
   if (empty_) {
     all_ = part;
-    all_.position.assign(3 * n, 0), all_.velocity.assign(only_positions_ ? 0 : 3 * n, 0);
-    all_.id.resize(only_positions_ ? 0 : n);  // as a solver alone returns them
-    std::iota(all_.id.begin(), all_.id.end(), 0);
-    std::erase_if(all_.fields,
+    std::erase_if(all_.fields,  // a solver alone has none
                   [](const StoredField& f) { return f.name == field::row_state.name; });
   }
-  place_rows(part.position, part.id, 3, all_.position);
-  if (!only_positions_) place_rows(part.velocity, part.id, 3, all_.velocity);
-  for (StoredField& f : all_.fields) {
-    const FieldInfo& info = *field_of(plan_, f.name);
-    const StoredField& other = *part.find(f.name);
-    if (info.is_per_particle()) {
-      if (empty_) f.values.assign(n * std::size_t(f.numbers), 0);
-      place_rows(other.values, part.id, std::size_t(f.numbers), f.values);
-    } else if (is_part(info, plan_) && !empty_) {
-      add_values(info, other.values, f.values);
-    }
-  }
+  for (StoredField& f : all_.fields)
+    if (!empty_ && is_part(*field_of(plan_, f.name), plan_))
+      add_values(*field_of(plan_, f.name), part.find(f.name)->values, f.values);
   empty_ = false;
 }
-SolverState WholeState::result() && {
+SolverState WholeHead::result() && {
   for (StoredField& f : all_.fields) {
+    if (of_particles(f, plan_)) continue;
     gather_sums(f, scene_, plan_.particles);
     normalize(*field_of(plan_, f.name), f.values);
   }
   return std::move(all_);
 }
 
-namespace {
-
-/// at(i): in h, along the slowest axis of the grid.
-template <class At>
-IdsOfRanks by_layer(std::size_t n, const At& at, const Plan& plan, int ranks) {
-  const int layers = plan.cells[2];
-  std::vector<int> layer(n);
-  std::vector<std::int64_t> in_layer(static_cast<std::size_t>(layers));
-  for (std::size_t i = 0; i < n; ++i) {
-    layer[i] = int(std::clamp(at(i) / plan.cell_edge, 0.0, layers - 1.0));
-    ++in_layer[std::size_t(layer[i])];
-  }
-  const Slabs slabs(in_layer, ranks, layers_per_unit(plan));
-  IdsOfRanks ids(static_cast<std::size_t>(ranks));
-  for (std::size_t i = 0; i < n; ++i) ids[std::size_t(slabs.owner(layer[i]))].push_back(int(i));
-  return ids;
-}
-
-template <class T>
-std::vector<T> picked(const std::vector<T>& rows, const std::vector<int>& ids,
-                      std::size_t numbers) {
-  std::vector<T> part;
-  part.reserve(ids.size() * numbers);
-  for (const int i : ids) {
-    const auto row = rows.begin() + std::ptrdiff_t(std::size_t(i) * numbers);
-    part.insert(part.end(), row, row + std::ptrdiff_t(numbers));
-  }
-  return part;
-}
-
-}  // namespace
-
-IdsOfRanks ids_of_ranks(const Particles& all, const Scene& scene, const Plan& plan, int ranks) {
-  const auto axis = std::size_t(plan.axes.of[2]);
-  const double origin = scene.origin()[axis], h = scene.h();
-  return by_layer(
-      all.size(), [&](std::size_t i) { return (all.position[i][axis] - origin) / h; }, plan, ranks);
-}
-IdsOfRanks ids_of_ranks(const SolverState& all, const Plan& plan, int ranks) {
-  const auto axis = std::size_t(plan.axes.of[2]);
-  return by_layer(
-      all.id.size(), [&](std::size_t i) { return all.position[3 * i + axis]; }, plan, ranks);
-}
-
-Particles part_of(const Particles& all, const std::vector<int>& ids) {
-  Particles part;
-  part.ids = ids;
-  for (const int i : ids) {
-    part.position.push_back(all.position[std::size_t(i)]);
-    part.velocity.push_back(all.velocity[std::size_t(i)]);
-  }
-  return part;
-}
-SolverState part_of(const SolverState& all, const std::vector<int>& ids, const Scene& scene,
-                    const Plan& plan, int rank) {
-  SolverState s;
-  s.precision = all.precision, s.updates = all.updates, s.steps = all.steps;
-  s.position = picked(all.position, ids, 3), s.velocity = picked(all.velocity, ids, 3);
-  s.id = picked(all.id, ids, 1);
-  for (const StoredField& f : all.fields) {
+SolverState head_of_rank(const SolverState& head, const Scene& scene, const Plan& plan, int rank,
+                         std::int64_t own) {
+  SolverState s = without_rows(head);
+  for (const StoredField& f : head.fields) {
     const FieldInfo* info = field_of(plan, f.name);
-    StoredField& part = s.fields.emplace_back(StoredField{f.name, f.real, f.numbers});
-    if (info && info->is_per_particle()) {
-      part.values = picked(f.values, ids, std::size_t(f.numbers));
-      continue;
-    }
+    StoredField& part = s.fields.emplace_back(without_values(f));
+    if (of_particles(f, plan)) continue;
     part.values = f.values;
     gather_sums(part, scene, plan.capacity);
     if (info && is_part(*info, plan) && rank != 0) std::ranges::fill(part.values, 0);
@@ -175,8 +157,110 @@ SolverState part_of(const SolverState& all, const std::vector<int>& ids, const S
   s.fields.push_back({field::row_state.name,
                       false,
                       field::row_state.numbers,
-                      {double(ids.size()), double(all.id.size()), 0, 0}});
+                      {double(own), double(plan.particles), 0, 0}});
   return s;
+}
+
+SolverState rows_between(const SolverState& s, std::int64_t first, std::int64_t last,
+                         const Plan& plan) {
+  const auto row_of = [&](std::int64_t id) {
+    return std::size_t(std::ranges::lower_bound(s.id, id) - s.id.begin());
+  };
+  const std::size_t low = row_of(first), high = row_of(last);
+  SolverState rows = without_rows(s);
+  rows.position = cut_out(s.position, low, high, 3);
+  rows.velocity = cut_out(s.velocity, low, high, 3);
+  rows.id = cut_out(s.id, low, high, 1);
+  for (const StoredField& f : s.fields)
+    if (of_particles(f, plan))
+      rows.fields.emplace_back(without_values(f)).values =
+          cut_out(f.values, low, high, std::size_t(f.numbers));
+  return rows;
+}
+
+SolverState piece_of(const SolverState& head, StateOf which, std::int64_t first, std::int64_t rows,
+                     const Plan& plan) {
+  const auto n = std::size_t(rows);
+  SolverState piece = without_rows(head);
+  piece.position.resize(3 * n);
+  if (which == StateOf::positions) return piece;  // as a solver alone returns them
+  piece.velocity.resize(3 * n);
+  piece.id.resize(n);
+  std::iota(piece.id.begin(), piece.id.end(), first);
+  for (const StoredField& f : head.fields)
+    if (of_particles(f, plan))
+      piece.fields.emplace_back(without_values(f)).values.resize(n * std::size_t(f.numbers));
+  return piece;
+}
+void place_rows(const SolverState& rows, std::int64_t first, SolverState& piece) {
+  place(rows.position, rows.id, first, 3, piece.position);
+  place(rows.velocity, rows.id, first, 3, piece.velocity);
+  for (StoredField& f : piece.fields)
+    place(rows.find(f.name)->values, rows.id, first, std::size_t(f.numbers), f.values);
+}
+
+SolverState picked(const SolverState& s, const std::vector<int>& rows, const Plan& plan) {
+  SolverState part = without_rows(s);
+  part.position = picked_rows(s.position, rows, 3);
+  part.velocity = picked_rows(s.velocity, rows, 3);
+  part.id = picked_rows(s.id, rows, 1);
+  for (const StoredField& f : s.fields)
+    if (of_particles(f, plan))
+      part.fields.emplace_back(without_values(f)).values =
+          picked_rows(f.values, rows, std::size_t(f.numbers));
+  return part;
+}
+void append(const SolverState& rows, SolverState& to) {
+  join(rows.position, to.position), join(rows.velocity, to.velocity), join(rows.id, to.id);
+  for (const StoredField& f : rows.fields)
+    for (StoredField& all : to.fields)
+      if (all.name == f.name) join(f.values, all.values);
+}
+
+FirstRanks::FirstRanks(const Scene& scene, const Plan& plan, int ranks)
+    : axis_(std::size_t(plan.axes.of[2])),
+      origin_(scene.origin()[axis_]),
+      h_(scene.h()),
+      cell_(plan.cell_edge),
+      ranks_(ranks),
+      unit_(layers_per_unit(plan)),
+      in_layer_(std::size_t(plan.cells[2])) {}
+
+int FirstRanks::layer(double at, bool in_h) const {
+  const double x = in_h ? at : (at - origin_) / h_;
+  return int(std::clamp(x / cell_, 0.0, double(in_layer_.size()) - 1));
+}
+void FirstRanks::count(const SolverState& rows) {
+  for (std::size_t k = axis_; k < rows.position.size(); k += 3)
+    ++in_layer_[std::size_t(layer(rows.position[k], true))];
+}
+void FirstRanks::count(const Particles& rows) {
+  for (const Double3& x : rows.position) ++in_layer_[std::size_t(layer(x[axis_], false))];
+}
+void FirstRanks::cut() { slabs_ = Slabs(in_layer_, ranks_, unit_); }
+std::int64_t FirstRanks::particles(int rank) const {
+  return std::accumulate(in_layer_.begin() + slabs_.low(rank),
+                         in_layer_.begin() + slabs_.high(rank), std::int64_t(0));
+}
+std::vector<std::vector<int>> FirstRanks::rows_of_ranks(const SolverState& rows) const {
+  std::vector<std::vector<int>> all(static_cast<std::size_t>(ranks_));
+  for (std::size_t k = axis_; k < rows.position.size(); k += 3)
+    all[std::size_t(slabs_.owner(layer(rows.position[k], true)))].push_back(int(k / 3));
+  return all;
+}
+std::vector<std::vector<int>> FirstRanks::rows_of_ranks(const Particles& rows) const {
+  std::vector<std::vector<int>> all(static_cast<std::size_t>(ranks_));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    all[std::size_t(slabs_.owner(layer(rows.position[k][axis_], false)))].push_back(int(k));
+  return all;
+}
+
+Particles part_of(const Particles& all, const std::vector<int>& rows, std::int64_t first) {
+  Particles part;
+  part.position = picked_rows(all.position, rows, 1);
+  part.velocity = picked_rows(all.velocity, rows, 1);
+  for (const int i : rows) part.ids.push_back(int(first + i));
+  return part;
 }
 
 }  // namespace pbf::exec_module

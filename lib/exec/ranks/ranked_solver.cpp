@@ -1,10 +1,9 @@
 #include "lib/exec/ranks/ranked_solver.h"
 
 #include <fmt/core.h>
-#include <algorithm>
+#include <numeric>
 #include <utility>
 
-#include "lib/base/error.h"
 #include "lib/exec/make_solver.h"
 #include "lib/exec/ranks/rank_states.h"
 #include "lib/exec/ranks/slabs.h"
@@ -45,13 +44,15 @@ RankedSolver::RankedSolver(Communicator& ranks, const Scene& scene, const Plan& 
       whole_scene_(scene),
       scene_(of_rank(scene, plan, ranks.size())),
       whole_plan_(plan),
-      plan_(make_plan(scene_, plan.particles, plan.start)) {
+      plan_(make_plan(scene_, plan.particles, plan.start)),
+      frame_(ranks, plan.particles) {
   require_ranks(scene, plan, ranks.size());
-  on_all([&] { local_ = make_local_solver(scene_, plan_, std::move(particles), &ranks_); });
+  on_all([&] { local_ = make_solver(scene_, plan_, std::move(particles), &ranks_); });
 }
 RankedSolver::~RankedSolver() {
+  if (left_) *left_ = std::move(before_);
   if (ranks_.rank() == 0 && !ended_) try {
-      say(What::end, {});
+      say(What::end);
     } catch (const std::exception&) {  // the others have failed
     }
 }
@@ -62,102 +63,97 @@ void RankedSolver::say(What what, const Packer& arguments) {
   all.bytes.insert(all.bytes.end(), arguments.bytes.begin(), arguments.bytes.end());
   ranks_.broadcast(all.bytes);
 }
-template <class F>
-auto RankedSolver::on_all(const F& f) -> decltype(f()) {
-  try {
-    return f();
-  } catch (const Error& e) {
-    ended_ = true;
-    ranks_.fail(e.what(), int(e.code()));
-    throw;
-  } catch (const std::exception& e) {
-    ended_ = true;
-    ranks_.fail(e.what(), int(ExitCode::internal));
-    throw;
-  }
-}
-
 void RankedSolver::serve() {
   on_all([&] {
     for (;;) {
       std::vector<char> bytes;
       ranks_.broadcast(bytes);
       Unpacker from(bytes);
-      switch (from.take<What>()) {
-        case What::step: {
-          const int updates = from.take<int>();
-          local_->step(updates, from.take<StepOptions>());
-          break;
-        }
-        case What::download: {
-          const auto fields = from.take<std::vector<std::string>>();
-          const auto type = from.take<ScalarType>();
-          whole(local_->download(fields, type).get(), fields, type);
-          break;
-        }
-        case What::diagnose:
-          local_->diagnose();
-          break;
-        case What::readings: {
-          const auto series = from.take<Series>();
-          local_->readings(series, from.take<Interval>());
-          break;
-        }
-        case What::state: {
-          const auto which = from.take<StateOf>();
-          whole(local_->state(which), which);
-          break;
-        }
-        case What::set_state:
-          local_->set_state(state_of(scatter(ranks_, {})));
-          break;
-        case What::keep:
-          local_->keep();
-          break;
-        case What::end:
-          return;
-      }
+      const auto what = from.take<What>();
+      if (what == What::end) return;
+      obey(what, from);
     }
   });
+}
+void RankedSolver::obey(What what, Unpacker& from) {
+  switch (what) {
+    case What::step: {
+      const int updates = from.take<int>();
+      return step_here(updates, from.take<StepOptions>());
+    }
+    case What::diagnose:
+      return void(local_->diagnose());
+    case What::readings: {
+      const auto series = from.take<Series>();
+      return void(local_->readings(series, from.take<Interval>()));
+    }
+    case What::keep:
+      return local_->keep();
+    case What::hold: {
+      const auto fields = from.take<std::vector<std::string>>();
+      const auto type = from.take<ScalarType>();
+      return void(frame_.hold([&] { return local_->download(fields, type).get(); }));
+    }
+    case What::held: {
+      const auto field = from.take<std::size_t>();
+      return frame_.held(field, from.take<std::int64_t>(), {});
+    }
+    case What::share_file: {
+      const auto path = from.take<std::string>();
+      return void(frame_.share_file(path, from.take<std::uint64_t>()));
+    }
+    case What::write_held: {
+      FramePlaces places{from.take<std::int64_t>(), {}};
+      places.chunks.resize(from.take<std::size_t>());
+      for (auto& chunks : places.chunks) from.take(chunks);
+      return frame_.write(places);
+    }
+    case What::written:
+      return void(frame_.written(from.take<bool>()));
+    case What::state: {
+      const auto which = from.take<StateOf>();
+      return give_state(which, from.take<std::int64_t>(), {});
+    }
+    case What::set_state:
+      return take_state(nullptr);
+    case What::go_back:
+      return local_->set_state(local_->state(StateOf::kept));
+    case What::moves:
+      return void(add_moves());
+    case What::end:
+      return;
+  }
 }
 
 void RankedSolver::step(int updates, const StepOptions& options) {
   say(What::step, Packer().add(updates).add(options));
-  on_all([&] { local_->step(updates, options); });
+  on_all([&] { step_here(updates, options); });
+}
+void RankedSolver::step_here(int updates, const StepOptions& options) {
+  if (!options.without_time) std::vector<double>().swap(before_);  // moves() is not for updates
+  local_->step(updates, options);
 }
 
+/// On rank 0 the particles of all ranks, in the order of ids.
 std::future<Snapshot> RankedSolver::download(const std::vector<std::string>& fields,
                                              ScalarType type) {
-  say(What::download, Packer().add(fields).add(type));
-  Snapshot all = on_all([&] { return whole(local_->download(fields, type).get(), fields, type); });
+  Snapshot all = hold(fields, type);
+  for (std::size_t k = 0; k < all.fields.size(); ++k) {
+    std::vector<std::byte>& bytes = all.fields[k].bytes;
+    if (all.fields[k].name != "id")
+      held(k, kPieceRows, [&](std::int64_t, FieldArray&& rows) {
+        bytes.insert(bytes.end(), rows.bytes.begin(), rows.bytes.end());
+      });
+    else
+      bytes = std::move(empty_snapshot({}, type, all.count, 0, 0).fields.back().bytes);
+  }
   std::promise<Snapshot> done;
   done.set_value(std::move(all));
   return done.get_future();
 }
-/// On rank 0 the particles of all ranks, in the order of ids; nothing on the others.
-Snapshot RankedSolver::whole(const Snapshot& mine, const std::vector<std::string>& fields,
-                             ScalarType type) {
-  Packer p;
-  p.add(ids_of(mine)).add(mine.fields.size());
-  for (const FieldArray& f : mine.fields) p.add(f.bytes);
-  Snapshot all = empty_snapshot(fields, type, ranks_.rank() == 0 ? std::size_t(plan_.particles) : 0,
-                                mine.update, mine.time);
-  ranks_.gather(std::move(p.bytes), [&](const std::vector<char>& part) {
-    Unpacker from(part);
-    const auto ids = from.take<std::vector<std::int64_t>>();
-    const auto arrays = from.take<std::size_t>();
-    for (std::size_t k = 0; k < arrays; ++k) {
-      const auto rows = from.take<std::vector<std::byte>>();
-      FieldArray& f = all.fields[k];
-      if (f.name != "id")
-        place_rows(rows, ids, std::size_t(f.components) * size_of(f.type), f.bytes);
-    }
-  });
-  return all;
-}
 
 Diagnostics RankedSolver::diagnose() {
-  say(What::diagnose, {});
+  say(What::diagnose);
   return on_all([&] { return local_->diagnose(); });
 }
 std::vector<double> RankedSolver::readings(Series series, Interval interval) {
@@ -165,29 +161,23 @@ std::vector<double> RankedSolver::readings(Series series, Interval interval) {
   return on_all([&] { return local_->readings(series, interval); });
 }
 
-/// On rank 0 that of all particles; nothing on the others.
-SolverState RankedSolver::whole(const SolverState& mine, StateOf which) {
-  WholeState all(which, scene_, plan_);
-  ranks_.gather(packed(mine), [&](const std::vector<char>& part) { all.add(state_of(part)); });
-  return ranks_.rank() == 0 ? std::move(all).result() : SolverState();
-}
-
 SolverState RankedSolver::state(StateOf which) {
-  say(What::state, Packer().add(which));
-  return on_all([&] { return whole(local_->state(which), which); });
+  SolverState all;
+  state_in_pieces(which, kPieceRows,
+                  {[&](SolverState&& head) { all = std::move(head); },
+                   [&](std::int64_t, SolverState&& rows) { append(rows, all); }});
+  return all;
 }
 void RankedSolver::set_state(const SolverState& s) {
   check_state(s, plan_.particles);
-  say(What::set_state, {});
-  on_all([&] {
-    const IdsOfRanks ids = ids_of_ranks(s, plan_, ranks_.size());
-    local_->set_state(state_of(scatter(ranks_, [&](int rank) {
-      return packed(part_of(s, ids[std::size_t(rank)], scene_, plan_, rank));
-    })));
-  });
+  set_state_in_pieces({head_of(s, plan_), plan_.particles, [&](std::int64_t first, std::int64_t n) {
+                         std::vector<int> rows(static_cast<std::size_t>(n));
+                         std::iota(rows.begin(), rows.end(), int(first));
+                         return picked(s, rows, plan_);
+                       }});
 }
 void RankedSolver::keep() {
-  say(What::keep, {});
+  say(What::keep);
   on_all([&] { local_->keep(); });
 }
 /// A solver of all particles, in the present state.
@@ -202,7 +192,7 @@ Inspection& RankedSolver::alone() {
       all.position.push_back({o[0] + h * x[0], o[1] + h * x[1], o[2] + h * x[2]});
     }
     all.velocity.resize(now.id.size());
-    alone_ = make_local_solver(whole_scene_, whole_plan_, std::move(all), nullptr);
+    alone_ = make_solver(whole_scene_, whole_plan_, std::move(all));
   }
   alone_->set_state(now);
   return *alone_->inspection();

@@ -11,6 +11,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/run_file_disk.h"
 #include "tests/support/run_file_samples.h"
+#include "tests/support/split_frame.h"
 
 using namespace pbf;
 using namespace pbf::test;
@@ -50,8 +51,8 @@ TEST_CASE("after every single write to the disk all frames reported so far are r
           "[slow][run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
-  const bool gzip = GENERATE(false, true);
-  const auto operations = operations_of_a_run(path, 50, gzip);
+  const bool gzip = GENERATE(false, true), split = GENERATE(false, true);
+  const auto operations = operations_of_a_run(path, 50, gzip, split);
   REQUIRE(operations.size() > 1000);
   Replica replica(folder / "replica.h5");
   std::int64_t sure = -1, states = 0;
@@ -71,7 +72,7 @@ TEST_CASE("after every single write to the disk all frames reported so far are r
       REQUIRE(reader.frames() >= sure);
       REQUIRE(values_within_steps(replica.path()));
       for (const std::int64_t k : {std::int64_t{0}, sure / 2, sure - 1})
-        REQUIRE(same(reader.frame(k), changing_sample(k)));
+        REQUIRE(same(reader.frame(k), split ? split_sample(k) : changing_sample(k)));
     }
   }
   REQUIRE(states > 1000);

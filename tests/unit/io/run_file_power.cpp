@@ -9,6 +9,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/run_file_disk.h"
 #include "tests/support/run_file_samples.h"
+#include "tests/support/split_frame.h"
 
 using namespace pbf;
 using namespace pbf::test;
@@ -76,8 +77,8 @@ TEST_CASE("a power cut at any moment leaves every reported frame, and no frame t
           "[slow][run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
-  const bool gzip = GENERATE(false, true);
-  const auto operations = operations_of_a_run(path, 50, gzip);
+  const bool gzip = GENERATE(false, true), split = GENERATE(false, true);
+  const auto operations = operations_of_a_run(path, 50, gzip, split);
   Disk disk;
   std::mt19937 random(12);
   std::int64_t reported = 0, states = 0;
@@ -95,7 +96,7 @@ TEST_CASE("a power cut at any moment leaves every reported frame, and no frame t
     const RunReader reader(copy);
     REQUIRE(reader.frames() >= reported);
     for (const std::int64_t f : {std::int64_t{0}, reported / 2, reported - 1, reader.frames() - 1})
-      REQUIRE(same(reader.frame(f), changing_sample(f)));
+      REQUIRE(same(reader.frame(f), split ? split_sample(f) : changing_sample(f)));
   }
   REQUIRE(states > 500);
 }
