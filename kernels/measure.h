@@ -131,12 +131,7 @@ struct MeasurePass {
 
   PBF_HD MeasureCounts counts(int i) const {
     MeasureCounts s;
-    if (i == 0) {
-      s.fast = std::int64_t(step_counts->fast);
-      s.repeats = std::int64_t(step_counts->repeats);
-      s.unresolved = std::int64_t(step_counts->unresolved);
-      s.way_squared = step_counts->way_squared;
-    }
+    if (i == 0) s = of_steps();
     if (!finite(i)) {
       s.non_finite = 1;
       return s;
@@ -154,6 +149,16 @@ struct MeasurePass {
     s.penetration = boundary.penetration(a.x);
     s.outside = p.boundary.beyond(a.x) ? 1 : 0;
     s.neighbors = s.neighbors_max = lists.size(i);
+    return s;
+  }
+
+  /// What row 0 counts besides its particle.
+  PBF_HD MeasureCounts of_steps() const {
+    MeasureCounts s;
+    s.fast = std::int64_t(step_counts->fast);
+    s.repeats = std::int64_t(step_counts->repeats);
+    s.unresolved = std::int64_t(step_counts->unresolved);
+    s.way_squared = step_counts->way_squared;
     return s;
   }
 

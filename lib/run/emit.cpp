@@ -55,8 +55,8 @@ void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particl
     for (int a = 0; a < 3; a += s.dimensions == 2 ? 2 : 1) {
       double& x = all.position[i][a];
       const double low = s.domain.min[a] + margin, high = s.domain.max[a] - margin, before = x;
-      if (x < low && !s.domain.is_open(a, false)) x = low;
-      if (x > high && !s.domain.is_open(a, true)) x = high;
+      if (x < low && s.domain.has_wall(a, false)) x = low;
+      if (x > high && s.domain.has_wall(a, true)) x = high;
       way = std::max(way, std::fabs(x - before));
     }
     if (way > 1e-6 * d) ++all.put_on_margin;  // less is rounding

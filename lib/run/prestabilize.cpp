@@ -7,6 +7,7 @@
 
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
+#include "lib/scene/periodic.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::run_module {
@@ -22,10 +23,14 @@ constexpr double kStill = 1e-6;        // h, a negligible move if all is at rest
 /// Displacements from `a` to `b`, h.
 struct Moves {
   double squares = 0, farthest = 0;
-  Moves(const std::vector<double>& a, const std::vector<double>& b) {
+  Moves(const std::vector<double>& a, const std::vector<double>& b, const Scene& s) {
+    const Double3 period = periods(s);
     for (std::size_t k = 0; k < a.size(); k += 3) {
       double squared = 0;
-      for (std::size_t c = k; c < k + 3; ++c) squared += (b[c] - a[c]) * (b[c] - a[c]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = shortest(b[k + c] - a[k + c], period[c] / s.h());
+        squared += d * d;
+      }
       squares += squared;
       farthest = std::max(farthest, squared);
     }
@@ -74,7 +79,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     solver.step(round, {.without_time = 1.0});
     p.steps += round;
     std::vector<double> to = solver.state(StateOf::positions).position;
-    const Moves moves(from, to);
+    const Moves moves(from, to, s);
     from = std::move(to);
     p.moved += moves.farthest * s.fluid.smoothing_ratio;
     p.kick = energy(moves.squares / (round * round));  // for the mean step of the round

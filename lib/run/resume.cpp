@@ -162,7 +162,7 @@ class Finder {
                       "scene in it and whose results are others") +
           kOtherwise);
     refuse_other("checkpoint.h5", s.scene, s.files);
-    if (!fits(s.state, plan.capacity, changes_rows(scene_)) ||
+    if (!fits(s.state, plan.most_particles(), changes_rows(scene_)) ||
         s.state.precision != scene_.precision)
       throw Error(ExitCode::io, folder_.file("checkpoint.h5") +
                                     ": holds other particles or another precision "

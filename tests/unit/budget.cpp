@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2250},      {"kernels", 5800},   {"lib/base", 1700},    {"lib/campaign", 3850},
-    {"lib/exec", 5400}, {"lib/io", 3400},    {"lib/program", 6700}, {"lib/render", 3850},
-    {"lib/run", 5350},  {"lib/scene", 6950}, {"lib/solver", 2800},  {"lib/verify", 2150},
+    {"app", 2250},      {"kernels", 6000},   {"lib/base", 1700},    {"lib/campaign", 3850},
+    {"lib/exec", 5650}, {"lib/io", 3400},    {"lib/program", 6700}, {"lib/render", 3850},
+    {"lib/run", 5350},  {"lib/scene", 7150}, {"lib/solver", 2950},  {"lib/verify", 2150},
 };
 constexpr int kLongestFile = 300;
 

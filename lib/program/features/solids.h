@@ -13,7 +13,7 @@
 #include "lib/program/time_order.h"
 
 namespace pbf::program_module {
-inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
+inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.is_closed(); }
 /// Enough for all half cells of the grid.
 inline std::int64_t per_half_cell(const Sizes& n) {
   return n.bins / bins_per_cell(n.scene.dimensions);

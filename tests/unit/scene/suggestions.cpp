@@ -99,6 +99,7 @@ TEST_CASE("suggestions: what obstacles and bodies do not have is said, no key of
   CHECK(contains(suggested("bodies[].motion"), "solids that move as told are obstacles"));
   CHECK(contains(suggested("domain.friction"), "have no friction"));
   CHECK(suggested("domain.walls") == "domain.open");
+  CHECK(suggested("domain.pbc") == "domain.periodic");
   CHECK(suggested("viscosity.dynamic") == "viscosity.xsph");
   CHECK(suggested("viscosity.kind") == "viscosity.xsph");
   CHECK(contains(suggested("fluid.speed_of_sound"), "there is no equation of state"));
