@@ -57,7 +57,7 @@ class PeriodicChecker : public SceneRules {
       add(s_.domain.periodic,
           "{}: the domain is {} m long along it, and a particle would see images of its own "
           "neighbors; give at least 3 smoothing lengths, {} m, or lower fluid.spacing",
-          kAxes[a], length, least);
+          kAxes[a], rounded(length), rounded(least));
   }
 
   /// What has a potential, or depends on the place, has no period.
@@ -91,9 +91,10 @@ class PeriodicChecker : public SceneRules {
       add(o.name,
           "reaches {0} = {1}, and obstacles have no images beyond periodic faces: leave 1.5 "
           "smoothing lengths, {0} from {2} to {3}; the flow is the same if all is moved along {0}",
-          kAxes[a], low < from - 1e-9 * clear ? low : high, from, to);
+          kAxes[a], rounded(low < from - 1e-9 * clear ? low : high), rounded(from), rounded(to));
   }
   static constexpr double kClear = 1.5;  ///< h
+  static double rounded(double x) { return std::stod(fmt::format("{:.6g}", x)); }
 
   void check(const gauge_keys::Flow& g, const Gauge&) {
     add(g.center,
@@ -121,7 +122,7 @@ class PeriodicChecker : public SceneRules {
       add(at,
           "{0} is {1}, and a gauge does not see through a periodic face: give {0} from {2} to {3}; "
           "the flow is the same if all is moved along {0}",
-          kAxes[a], x, low, high);
+          kAxes[a], x, rounded(low), rounded(high));
   }
 };
 

@@ -99,8 +99,8 @@ TEST_CASE("fluid that comes round through a periodic face meets an obstacle as i
   }
   c.particles = free;
   const Difference near = against_oracle(c, 2);
-  CHECK(near.position < (is_double() ? 3e-12 : 2e-4));
-  CHECK(near.velocity < (is_double() ? 6e-12 : 2e-4));
+  CHECK(near.position < (is_double() ? 1e-8 : 2e-4));  // as in test_obstacles.cpp
+  CHECK(near.velocity < (is_double() ? 1e-8 : 2e-4));
   // Later on nothing is inside, and the force is that on a body in the way.
   for (auto& v : c.particles.velocity) v[0] += 1;
   auto solver = make(c);
@@ -176,10 +176,14 @@ double apart_when_moved(const Case& c, int updates) {
 
 TEST_CASE("a periodic scene moved along periodic axes is the same scene, moved") {
   const bool flat = GENERATE(false, true);
-  SECTION("a shear wave, over 100 updates") {
-    Case c = shear_wave(flat, 0.4);
+  SECTION("a flow without disorder, over 100 updates: a shear wave, and a lattice that flies") {
+    Case c = flat ? shear_wave(true, 0.4) : in_space({"x", "y", "z"}, 0, 0);
+    if (!flat) {
+      c.scene.gravity = {};
+      for (auto& v : c.particles.velocity) v = {0.4, -0.1, 0.2};
+    }
     c.scene.viscosity = pbf::Viscosity{};
-    CHECK(apart_when_moved(c, 100) < (is_double() ? 1e-12 : 1e-3));
+    CHECK(apart_when_moved(c, 100) < (is_double() ? 1e-12 : 1e-2));
   }
   SECTION("disorder, in which rounding grows tenfold in 6 updates, also in closed boxes") {
     std::vector<std::string> axes{"x", "z"};
@@ -193,7 +197,10 @@ TEST_CASE("a periodic scene moved along periodic axes is the same scene, moved")
 
 TEST_CASE("viscosity damps a shear wave as a sum over the lattice by hand says") {
   const bool flat = GENERATE(false, true);
-  Case c = shear_wave(flat, 1e-3);  // the layers stay where they are, to 1e-3 of the spacing
+  // The layers stay where they are, to 2e-3 of the spacing. A cubic lattice is a little denser
+  // then.
+  Case c = shear_wave(flat, 1e-3);
+  const double near = !is_double() ? 2e-2 : flat ? 1e-4 : 1e-3;
   c.scene.time.order = pbf::TimeOrder::first;
   c.scene.viscosity = pbf::Viscosity{0.2};
   // v_i += c sum_j vol W_ij (v_j - v_i), where vol sum_j W_ij = 1 on the lattice at rest, that of
@@ -214,8 +221,8 @@ TEST_CASE("viscosity damps a shear wave as a sum over the lattice by hand says")
   const pbf::SolverState state = solver->state();
   for (std::size_t i = 0; i < c.particles.size(); ++i) {
     const double before = c.particles.velocity[i][0] / c.scene.h();
-    CHECK(state.velocity[3 * i] == Approx(before * std::pow(factor, updates))
-                                       .margin((is_double() ? 1e-4 : 2e-2) * 1e-3 / c.scene.h()));
+    CHECK(state.velocity[3 * i] ==
+          Approx(before * std::pow(factor, updates)).margin(near * 1e-3 / c.scene.h()));
   }
   CHECK(std::pow(factor, updates) < 0.9);
 }

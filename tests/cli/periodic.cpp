@@ -26,11 +26,11 @@ std::string meeting(const Scratch& folder, const std::string& more = {}) {
                       "output: {every: 0.01}\n" +
                           more);
 }
-Outcome run(const Scratch& folder, const std::string& out, Args more = {}) {
+Outcome run_meeting(const Scratch& folder, const std::string& out, Args more = {}) {
   more.insert(more.begin(), {"run", "s.yaml", "--quiet", "--out", out});
   return pbf::test::pbf(more, folder.path());
 }
-std::string difference(const Scratch& folder, const std::string& a, const std::string& b) {
+std::string runs_differ(const Scratch& folder, const std::string& a, const std::string& b) {
   return run_difference(folder / (a + "/run.vtkhdf"), folder / (b + "/run.vtkhdf"));
 }
 
@@ -42,16 +42,16 @@ TEST_CASE("a periodic run has the same bytes with other threads, and when it is 
   const std::string more = GENERATE("", "solver: {substeps: 2, iterations: 2}\n");
   meeting(folder, more);
   for (const char* threads : {"1", "2"}) {
-    const Outcome o = run(folder, threads, {"--threads", threads});
+    const Outcome o = run_meeting(folder, threads, {"--threads", threads});
     CAPTURE(o.err);
     REQUIRE(o.code == 0);
   }
-  CHECK(difference(folder, "1", "2") == "");
-  REQUIRE(run(folder, "b", {"--set", "time.end=0.113"}).code == 0);
-  const Outcome o = run(folder, "b", {"--resume"});
+  CHECK(runs_differ(folder, "1", "2") == "");
+  REQUIRE(run_meeting(folder, "b", {"--set", "time.end=0.113"}).code == 0);
+  const Outcome o = run_meeting(folder, "b", {"--resume"});
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
-  CHECK(difference(folder, "1", "b") == "");
+  CHECK(runs_differ(folder, "1", "b") == "");
 }
 
 TEST_CASE("adaptive steps of a periodic run go back and on to the same bytes", "[slow]") {
@@ -61,16 +61,16 @@ TEST_CASE("adaptive steps of a periodic run go back and on to the same bytes", "
   Args shorter = adaptive, again = adaptive;
   shorter.insert(shorter.end(), {"--set", "time.end=0.1"});
   again.push_back("--resume");
-  REQUIRE(run(folder, "a", adaptive).code == 0);
-  REQUIRE(run(folder, "b", shorter).code == 0);
-  REQUIRE(run(folder, "b", again).code == 0);
-  CHECK(difference(folder, "a", "b") == "");
+  REQUIRE(run_meeting(folder, "a", adaptive).code == 0);
+  REQUIRE(run_meeting(folder, "b", shorter).code == 0);
+  REQUIRE(run_meeting(folder, "b", again).code == 0);
+  CHECK(runs_differ(folder, "a", "b") == "");
 }
 
 TEST_CASE("frames of a periodic run are inside its domain", "[slow]") {
   const Scratch folder;
   meeting(folder);
-  REQUIRE(run(folder, "a").code == 0);
+  REQUIRE(run_meeting(folder, "a").code == 0);
   pbf::RunReader reader((folder / "a/run.vtkhdf").string());
   REQUIRE(reader.frames() == 21);
   bool moved = false;
