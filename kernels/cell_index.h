@@ -29,9 +29,9 @@ struct GridCell {
 
 template <int D, class Real>
 PBF_HD GridCell cell_of(Vec3<Real> x, const Params<Real>& p) {
-  return {cell_coordinate(x.x, p.inv_cell + p.inv_cell, p.cells_x),
-          D == 2 ? 0 : cell_coordinate(x.y, p.inv_cell, p.cells_y),
-          cell_coordinate(x.z, p.inv_cell, p.cells_z) - p.first_layer};
+  return {cell_coordinate(x.x + p.below.x, p.inv_cell + p.inv_cell, p.cells_x),
+          D == 2 ? 0 : cell_coordinate(x.y + p.below.y, p.inv_cell, p.cells_y),
+          cell_coordinate(x.z + p.below.z, p.inv_cell, p.cells_z) - p.first_layer};
 }
 
 /// Bins of a half cell: the quarters of its y-z face, in two dimensions the halves of its z edge.
@@ -44,11 +44,11 @@ PBF_HD int bin_of(Vec3<Real> x, const Params<Real>& p) {
   const GridCell c = cell_of<D>(x, p);
   const Real twice = p.inv_cell + p.inv_cell;
   if constexpr (D == 2) {
-    const int z = cell_coordinate(x.z, twice, 2 * p.cells_z) & 1;
+    const int z = cell_coordinate(x.z + p.below.z, twice, 2 * p.cells_z) & 1;
     return (c.z * p.cells_x + c.x) * bins_per_cell(D) + z;
   }
-  const int y = cell_coordinate(x.y, twice, 2 * p.cells_y) & 1;
-  const int z = cell_coordinate(x.z, twice, 2 * p.cells_z) & 1;
+  const int y = cell_coordinate(x.y + p.below.y, twice, 2 * p.cells_y) & 1;
+  const int z = cell_coordinate(x.z + p.below.z, twice, 2 * p.cells_z) & 1;
   return ((c.z * p.cells_y + c.y) * p.cells_x + c.x) * bins_per_cell(D) + 2 * z + y;
 }
 

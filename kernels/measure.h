@@ -140,7 +140,7 @@ struct MeasurePass {
 
   PBF_HD MeasureCounts counts(int i) const {
     MeasureCounts s;
-    if (i == 0) s = counts_of(*step_counts);
+    if (i == 0) s = of_steps();
     if (!finite(i)) {
       s.non_finite = 1;
       return s;
@@ -160,6 +160,9 @@ struct MeasurePass {
     s.neighbors = s.neighbors_max = lists.size(i);
     return s;
   }
+
+  /// What row 0 counts besides its particle.
+  PBF_HD MeasureCounts of_steps() const { return counts_of(*step_counts); }
 
   PBF_HD MeasureTerms terms(int i, const MeasureUnits& unit) const {
     MeasureTerms s;

@@ -5,6 +5,7 @@
 #include "kernels/pair_sum.h"
 #include "kernels/pass_levels.h"
 #include "kernels/pass_predict.h"
+#include "kernels/row_state.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -156,7 +157,8 @@ struct DeltaPass {
       const Vec3<Real> d = xyz(own) - xyz(y);
       const Real q2 = dot(d, d);
       if (q2 <= coincident_q_squared<Real>())
-        sum = sum + weight(own, y, Real(0), Real(1)) * separation<Real, D>(id[i], id[j]);
+        sum = sum + weight(own, y, Real(0), Real(1)) *
+                        separation<Real, D>(particle_of(id[i]), particle_of(id[j]));
     });
     return sum;
   }

@@ -22,9 +22,17 @@ struct RowState {
   }
 };
 
-/// Rows first ... last - 1.
+/// Images of particles beyond periodic faces (pass_images.h) have the id of the particle with this
+/// bit, so that a sort puts them behind the particles of their bin.
+inline constexpr int kImage = 1 << 30;
+PBF_HD constexpr bool is_image(int id) { return id >= kImage; }
+PBF_HD constexpr int particle_of(int id) { return id & ~kImage; }
+
+/// Rows first ... last - 1, without those of images if `id` is not null.
 struct RowRange {
   int first, last;
+  const int* id = nullptr;
+  PBF_HD bool leaves_out(int i) const { return id && is_image(id[i]); }
 };
 
 /// A number of rows that is in the memory of the executor; at most `most`.

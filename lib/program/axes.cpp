@@ -39,7 +39,8 @@ Scene in_internal_axes(const Scene& scene, const Axes& axes) {
     s.domain.max[k] = scene.domain.max[from];
     s.gravity[k] = scene.gravity[from];
   }
-  for (std::string& face : s.domain.open) face[0] = char('x' + axes.inside(face[0] - 'x'));
+  for (auto* names : {&s.domain.open, &s.domain.periodic})
+    for (std::string& name : *names) name[0] = char('x' + axes.inside(name[0] - 'x'));
   return s;
 }
 

@@ -33,7 +33,7 @@ inline Box<double> whole_kernel_walls(const Scene& s, const Axes& axes) {
     extent[k] = (s.domain.max[std::size_t(a)] - s.domain.min[std::size_t(a)]) / s.h();
     if (s.dimensions == 2 && a == 1) continue;
     for (const int high : {0, 1})
-      if (!s.domain.is_open(a, high == 1)) box.walls |= 1u << (2 * k + high);
+      if (s.domain.has_wall(a, high == 1)) box.walls |= 1u << (2 * k + high);
   }
   box.extent = {extent[0], extent[1], extent[2]};
   return box;

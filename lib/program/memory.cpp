@@ -60,6 +60,10 @@ void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder
   }
   const std::int64_t n = plan.capacity;
   if (changes_rows(s)) add("order of ids", "int32", 1, n);
+  if (plan.images > 0) {
+    add("images beyond periodic faces, now and next", "int32", 2 * 3, plan.images);
+    add("row of each particle", "int32", 1, plan.particles);
+  }
   if (add.on_device)
     add("sums of a measure by block", "int64",
         int((sizeof(MeasureCounts) + sizeof(MeasureTerms)) / 8), reduce_blocks(n) + 1);
@@ -72,7 +76,7 @@ void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder
 /// While the solver is created. Emission and conversion free each array as soon as it was used.
 std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real,
                        MemoryPlan& memory) {
-  const std::int64_t n = plan.capacity, r = size_of(real);
+  const std::int64_t n = plan.most_particles(), r = size_of(real);
   const Adder add{memory, false, Held::start};
   add("emitted position", "double", 3, n);
   add("emitted velocity", "double", 3, n);
@@ -92,14 +96,14 @@ std::int64_t add_before_run(const Scene& s, const Plan& plan, const std::string&
   const Adder add{memory, false, Held::start};
   std::int64_t start = 0;
   if (s.settle) {  // the solver that settles is gone before that of the run is made
-    add("particles while the start settles", "double", 6, plan.capacity);
-    add("positions of the settled start", "double", 3, plan.capacity);
-    start = 72 * plan.capacity;
+    add("particles while the start settles", "double", 6, plan.most_particles());
+    add("positions of the settled start", "double", 3, plan.most_particles());
+    start = 72 * plan.most_particles();
   }
   if (!s.solver.prestabilize || s.solver.iterations == 0) return start;
   // A single body on its lattice has no compression.
   if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return start;
-  const std::int64_t n = plan.capacity, kept = n * (8 * size_of(real) + 4);
+  const std::int64_t n = plan.most_particles(), kept = n * (8 * size_of(real) + 4);
   add("positions around steps without time", "double", 3, 2 * n);
   if (s.settle) return std::max(start, 96 * n);
   return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
@@ -110,7 +114,7 @@ std::int64_t add_before_run(const Scene& s, const Plan& plan, const std::string&
 std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
   if (scalars == 0) return 0;
-  const std::int64_t n = plan.capacity;
+  const std::int64_t n = plan.most_particles();
   const bool on_device = about(s.backend).on_device;
   const std::string real = word(s.output ? s.output->precision : Precision::single);
   if (on_device) {
@@ -148,7 +152,7 @@ std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
 void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, MemoryPlan& memory) {
   if (!s.checkpoint) return;
   const Adder add{memory, false, Held::checkpoint};
-  const std::int64_t n = plan.capacity;
+  const std::int64_t n = plan.most_particles();
   add("state for a checkpoint", "double", 6, n);
   add("ids for a checkpoint", "int64", 1, n);
   add("chunk before and after its checksum", real, 3, 2 * std::min<std::int64_t>(n, 1 << 18));

@@ -23,7 +23,7 @@ unsigned behind_walls(const Scene& s, const Matrix3& rows, const Double3& center
         const double slack = 1e-9 * (s.domain.max[k] - s.domain.min[k]);
         const bool reached =
             along < 0 ? at <= s.domain.min[k] + slack : at >= s.domain.max[k] - slack;
-        if (half[axis] > 0 && reached && !s.domain.is_open(int(k), along > 0)) through |= bit;
+        if (half[axis] > 0 && reached && s.domain.has_wall(int(k), along > 0)) through |= bit;
       }
     }
   return through;

@@ -29,9 +29,13 @@ void plan_grid(Plan& plan, const Scene& scene) {
   double box[3];
   for (std::size_t k = 0; k < 3; ++k) box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
   if (s.dimensions == 2) box[1] = 0;  // one layer, even if the slab is thicker than h
+  // Images are in one more cell on each side.
+  const auto along = [&](int k, double edge) {
+    return box[k] + (s.domain.is_periodic(k) ? 2 * edge : 0);
+  };
   const auto number = [&](double edge) {
-    return (std::floor(2 * box[0] / edge) + 1) / 2 * (std::floor(box[1] / edge) + 1) *
-           (std::floor(box[2] / edge) + 1);
+    return (std::floor(2 * along(0, edge) / edge) + 1) / 2 *
+           (std::floor(along(1, edge) / edge) + 1) * (std::floor(along(2, edge) / edge) + 1);
   };
   const double limit = std::min(double(plan.particles) + 65536, 2e8);
   plan.cell_edge = 1;
@@ -39,8 +43,25 @@ void plan_grid(Plan& plan, const Scene& scene) {
     const double over = number(plan.cell_edge) / limit;
     plan.cell_edge *= std::max(1.01, s.dimensions == 2 ? std::sqrt(over) : std::cbrt(over));
   }
-  plan.cells[0] = int(2 * box[0] / plan.cell_edge) + 1;
-  for (int k = 1; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;
+  const double edge = plan.cell_edge;
+  plan.cells[0] = int(2 * along(0, edge) / edge) + 1;
+  for (int k = 1; k < 3; ++k) plan.cells[k] = int(along(k, edge) / edge) + 1;
+}
+
+/// Rows for images beyond periodic faces (kernels/pass_images.h): for fluid of twice the density at
+/// rest, and at most one for each set of faces that a particle may be near.
+std::int64_t image_rows(const Scene& s, std::int64_t particles) {
+  double inner = 1, outer = 1;
+  std::int64_t sets = 1;
+  for (int a = 0; a < 3; ++a) {
+    if (s.dimensions == 2 && a == 1) continue;
+    const double length = (s.domain.max[a] - s.domain.min[a]) / s.h();
+    inner *= length;
+    outer *= length + (s.domain.is_periodic(a) ? 2.1 : 0);
+    if (s.domain.is_periodic(a)) sets *= 2;
+  }
+  const double at_rest = (outer - inner) * std::pow(s.fluid.smoothing_ratio, s.dimensions);
+  return std::int64_t(std::min(2 * at_rest + 256, double(particles) * double(sets - 1)));
 }
 
 /// The steps of a Richardson iteration with the Chebyshev polynomial on [a, b] as error polynomial:
@@ -74,6 +95,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.obstacles.empty(), "obstacles", "no key obstacles");
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
+  out(s.domain.periodic.empty(), "images beyond periodic faces", "no key domain.periodic");
   out(plan.repeats == 0, "iterations until a tolerance is met", "solver.tolerance is 0");
   out(!plan.program.has_pairs(),
       "sort and neighbor lists, but for a measure and for densities of a frame",
@@ -130,7 +152,7 @@ double table_bytes(double columns, double rows) {
 }
 
 void plan_files(Plan& plan, const Scene& s) {
-  const auto n = double(plan.capacity);
+  const auto n = double(plan.most_particles());
   const auto add = [&](const char* name, double number, double bytes,
                        const std::string& note = {}) {
     plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
@@ -176,7 +198,8 @@ UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; 
 Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
   plan.particles = particles;
-  plan.capacity = std::max(particles, s.capacity);
+  plan.images = image_rows(s, particles);
+  plan.capacity = std::max(particles, s.capacity) + plan.images;
   plan.start = std::move(start);
   plan.mass = s.particle_mass();
   plan.dissipation_unit = 1 / (s.time.step * s.time.step);

@@ -37,7 +37,8 @@ struct PlanFile {
 
 struct Plan {
   std::int64_t particles = 0;  ///< at the start
-  std::int64_t capacity = 0;   ///< at most; the arrays have so many rows
+  std::int64_t capacity = 0;   ///< rows of the arrays: of as many particles as may be, and images
+  std::int64_t images = 0;     ///< rows for images beyond periodic faces, among them
   StartNeighbors start;        ///< lib/run/start_neighbors.h
   double cell_edge = 1;        ///< in h, >= 1: larger only if the box would need too many cells
   Axes axes;                   ///< of the internal frame; lib/program/axes.h
@@ -69,6 +70,7 @@ struct Plan {
 
   std::int64_t bytes() const { return memory.solver_bytes(); }
   UpdateShape shape() const;
+  std::int64_t most_particles() const { return capacity - images; }
 };
 
 /// Number of datasets of run.vtkhdf, including the columns of log and gauges. Each has an index.

@@ -77,7 +77,7 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
                                         const Params<Real>& p, const Bounds<Real>& clear,
                                         bool booked) {
   std::vector<int> cells;
-  if (!scene.domain.open.empty()) return cells;
+  if (!scene.domain.is_closed()) return cells;
   const bool flat = p.dimensions == 2;
   const double edge = 1 / double(p.inv_cell), rounding = 1e-3;
   // Half the edges of a half cell.

@@ -54,8 +54,8 @@ class IntoScene {
     for (int a = 0; a < 3; a += scene_.dimensions == 2 ? 2 : 1) {
       const double low = scene_.domain.min[a] + margin, high = scene_.domain.max[a] - margin,
                    before = x[a];
-      if (x[a] < low && !scene_.domain.is_open(a, false)) x[a] = low;
-      if (x[a] > high && !scene_.domain.is_open(a, true)) x[a] = high;
+      if (x[a] < low && scene_.domain.has_wall(a, false)) x[a] = low;
+      if (x[a] > high && scene_.domain.has_wall(a, true)) x[a] = high;
       way = std::max(way, std::fabs(x[a] - before));
     }
     if (way > 1e-6 * d) ++put_on_margin_;  // less is rounding

@@ -112,7 +112,7 @@ std::string wall_text(const Scene& s, std::size_t k, const Track& track) {
   std::string text;
   double most = 0;
   for (int face = 0; face < 6; ++face) {
-    if ((s.plane() && face / 2 == 1) || s.domain.is_open(face / 2, face % 2 == 1) ||
+    if ((s.plane() && face / 2 == 1) || !s.domain.has_wall(face / 2, face % 2 == 1) ||
         face == top_of(s))
       continue;
     const std::optional<Crossing> c = crossing(s, o, track, face);

@@ -8,6 +8,7 @@
 
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
+#include "lib/scene/periodic.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/split_rows.h"
 
@@ -24,18 +25,22 @@ constexpr double kStill = 1e-6;        // h, a negligible move if all is at rest
 /// Displacements from one call to the next, h. In the first one there are none.
 class Course {
  public:
-  explicit Course(Solver& solver) : solver_(solver) { next(); }
+  Course(Solver& solver, const Scene& s) : solver_(solver), period_(periods(s)) {
+    for (double& length : period_) length /= s.h();
+    next();
+  }
   Moves next() {
     if (SplitRows* split = solver_.split()) return split->moves();
     std::vector<double> to = solver_.state(StateOf::positions).position;
     Moves moves;
-    if (!from_.empty()) moves.add(from_, to);
+    if (!from_.empty()) moves.add(from_, to, period_);
     from_ = std::move(to);
     return moves;
   }
 
  private:
   Solver& solver_;
+  Double3 period_;
   std::vector<double> from_;
 };
 
@@ -71,7 +76,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
   p.kick = energy(n * std::pow(2 * p.before.compression_rms, 2));
   if (p.relieved() || p.before.non_finite > 0) return p;
-  Course positions(solver);
+  Course positions(solver, s);
   std::vector<Point> course;
   const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
   const std::int64_t most = std::max<std::int64_t>(kMostIterations / iterations, 32);

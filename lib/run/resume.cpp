@@ -163,7 +163,7 @@ class Finder {
                       "scene in it and whose results are others") +
           kOtherwise);
     refuse_other("checkpoint.h5", s.scene, s.files);
-    const bool fitting = s.path.empty() ? fits(s.state, plan.capacity, changes_rows(scene_))
+    const bool fitting = s.path.empty() ? fits(s.state, plan.most_particles(), changes_rows(scene_))
                                         : s.particles == plan.particles;
     if (!fitting || s.state.precision != scene_.precision)
       throw Error(ExitCode::io, folder_.file("checkpoint.h5") +

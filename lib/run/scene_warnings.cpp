@@ -13,6 +13,8 @@
 #include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
+#include "lib/scene/body_box.h"
+#include "lib/scene/periodic.h"
 #include "lib/scene/surface.h"
 
 namespace pbf::run_module {
@@ -181,6 +183,28 @@ std::string over_dense_text(const Scene& s, std::int64_t particles) {
       fill);
 }
 
+/// For lattices that reach from one periodic face to the other and do not fit between them.
+std::string seam_text(const Scene& s) {
+  const double d = s.fluid.spacing;
+  for (const int axis : periodic_axes(s)) {
+    const auto a = std::size_t(axis);
+    const double low = s.domain.min[a], high = s.domain.max[a], cells = (high - low) / d;
+    const double whole = std::floor(cells + 1e-6), nearest = std::round(cells);
+    if (std::fabs(cells - nearest) < 1e-6) continue;
+    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+      if (s.bodies[b].shape != Shape::block) continue;
+      const BodyBox box = body_box(s.bodies[b]);
+      if (box.low[a] > low + 0.5 * d || box.high[a] < high - d) continue;
+      return fmt::format(
+          "bodies[{}]: the domain is {:g} fluid.spacing long along the periodic axis {}, so the "
+          "lattice leaves a seam of {:.2g} spacings at its faces; give a length of {:g} m ({:g} "
+          "spacings), or fluid.spacing {:.10g}",
+          b, cells, "xyz"[a], cells - whole, nearest * d, nearest, (high - low) / nearest);
+    }
+  }
+  return "";
+}
+
 std::string output_text(const Scene& s) {
   const double run = s.time.end * (1 + 1e-9);
   std::vector<std::string> texts;
@@ -230,7 +254,8 @@ std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t part
       {"table", tables_text(scene)},       {"obstacles", obstacles_text(scene, tracks)},
       {"wall", walls_text(scene, tracks)}, {"collision", collisions_text(scene, tracks)},
       {"overlap", overlap_text(points)},   {"over-dense", over_dense_text(scene, particles)},
-      {"relaxation", sor_text(scene)},     {"output", output_text(scene)}};
+      {"seam", seam_text(scene)},          {"relaxation", sor_text(scene)},
+      {"output", output_text(scene)}};
   std::erase_if(list, [](const Warning& w) { return w.text.empty(); });
   return list;
 }

@@ -13,6 +13,7 @@
 #include "lib/run/guard.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
+#include "lib/scene/periodic.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/split_rows.h"
 
@@ -37,12 +38,15 @@ bool advance(Solver& solver, std::int64_t updates,
 /// Puts the particles where they have come to, and returns the farthest way, m.
 double move_to(const std::vector<double>& position, const Scene& s, std::vector<Double3>& to) {
   double farthest = 0;
+  const Double3 period = periods(s);
   for (std::size_t i = 0; i < to.size(); ++i) {
     Double3 x;
     for (std::size_t a = 0; a < 3; ++a) x[a] = s.origin()[a] + s.h() * position[3 * i + a];
     if (s.domain.open.empty())  // rounding may have put it outside
       for (std::size_t a = 0; a < 3; ++a) x[a] = std::clamp(x[a], s.domain.min[a], s.domain.max[a]);
-    farthest = std::max(farthest, length(x - to[i]));
+    Double3 way = x - to[i];
+    for (std::size_t a = 0; a < 3; ++a) way[a] = shortest(way[a], period[a]);
+    farthest = std::max(farthest, length(way));
     to[i] = x;
   }
   return farthest;

@@ -10,8 +10,8 @@
 namespace pbf::run_module {
 
 /// `kind`: units, step, speed, motion, table, obstacles, wall, collision, overlap, over-dense,
-/// relaxation, output (of a scene); compressed, energy, stirred, passed_through, closed_in, left
-/// (of a run). A list has at most one warning of each kind.
+/// seam, relaxation, output (of a scene); compressed, energy, stirred, passed_through, closed_in,
+/// left (of a run). A list has at most one warning of each kind.
 struct Warning {
   std::string kind, text;
 };

@@ -116,18 +116,6 @@ class GaugeChecker : public SceneRules {
           g.radius, g.on, radius - d);
   }
 
-  bool good_obstacle(const Obstacle& o) const {
-    return good(o.shape) &&
-           std::visit(
-               [&]<class Shape>(const Shape& keys) {
-                 const Matrix3 axes = keys.axes();  // NaN if a direction has length 0
-                 return std::isfinite(axes[0][0]) &&
-                        std::apply([&](const auto&... key) { return good(keys.*key.member...); },
-                                   Shape::keys());
-               },
-               o.shape);
-  }
-
   std::string unknown_surface(const std::string& on) const {
     std::vector<std::string> names(kFaceNames.begin(), kFaceNames.end());
     for (const Obstacle& o : s_.obstacles) names.push_back(o.name);

@@ -37,6 +37,10 @@ KeyRows start_rows() {
            flat(FlatY::top), exact(kFrame)),
        key(KEY(domain.open), one_of({kFaceNames.begin(), kFaceNames.end()}),
            "Faces of the box without a wall, as a list."),
+       key(KEY(domain.periodic), one_of({"x", "y", "z"}),
+           "Axes whose two faces are joined, as a list: what leaves through one face enters "
+           "through "
+           "the other. At least 3 h long, best a whole number of fluid.spacing."),
        key(KEY(domain.loads), plain,
            "Sums the force and the torque of the fluid on each wall; columns load/x_min/force_x "
            "and so on of the log."),

@@ -53,11 +53,19 @@ struct Domain {
   Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
   bool loads = false;             ///< the fluid's forces on the walls are recorded
+  std::vector<std::string> periodic{};  ///< axes whose two faces are joined: x y z
   bool operator==(const Domain&) const = default;
   bool is_open(int axis, bool high) const {
     return std::find(open.begin(), open.end(), kFaceNames[std::size_t(2 * axis + high)]) !=
            open.end();
   }
+  bool is_periodic(int axis) const {
+    return std::find(periodic.begin(), periodic.end(), std::string(1, char('x' + axis))) !=
+           periodic.end();
+  }
+  bool has_wall(int axis, bool high) const { return !is_open(axis, high) && !is_periodic(axis); }
+  /// Whether all six faces are walls.
+  bool is_closed() const { return open.empty() && periodic.empty(); }
 };
 
 /// Smallest fluid.smoothing_ratio with fluid.mass: auto. Below it the density sum contains little

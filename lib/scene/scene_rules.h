@@ -41,6 +41,18 @@ class SceneRules {
   }
   /// Whether all of these were read without a problem.
   bool good(const auto&... members) const { return p_.good({name(members)...}); }
+  /// The same for all that the shape of an obstacle needs.
+  bool good_obstacle(const Obstacle& o) const {
+    return good(o.shape) &&
+           std::visit(
+               [&]<class Shape>(const Shape& keys) {
+                 const Matrix3 axes = keys.axes();  // NaN if a direction has length 0
+                 return std::isfinite(axes[0][0]) &&
+                        std::apply([&](const auto&... key) { return good(keys.*key.member...); },
+                                   Shape::keys());
+               },
+               o.shape);
+  }
   template <class T>
   using Shown = decltype(shown(std::declval<const T&>()));
   template <class... T>
@@ -110,5 +122,6 @@ class SceneRules {
 void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);
+void check_periodic(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::scene_module

@@ -45,7 +45,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
               Real((s.domain.max[2] - s.domain.min[2]) / h)};
   b.margin = Real(s.solver.wall_margin / h);
   for (int k = 0; k < 6; ++k)
-    if (s.domain.is_open(k / 2, k % 2 == 1)) b.walls &= ~(1u << k);
+    if (!s.domain.has_wall(k / 2, k % 2 == 1)) b.walls &= ~(1u << k);
   if (s.dimensions == 2) b.walls &= ~(y_min | y_max);
   b.adds_density = s.solver.boundary == BoundaryMode::density && b.walls != 0;
   b.scale = Real(plan.wall_scale);
@@ -54,6 +54,12 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.cells_y = plan.cells[1];
   p.cells_z = p.layers = plan.cells[2];
   p.inv_cell = Real(1 / plan.cell_edge);
+  const auto if_periodic = [&](int axis, Real value) {
+    return s.domain.is_periodic(axis) ? value : Real(0);
+  };
+  p.period = {if_periodic(0, b.extent.x), if_periodic(1, b.extent.y), if_periodic(2, b.extent.z)};
+  const Real cell = Real(plan.cell_edge);
+  p.below = {if_periodic(0, cell), if_periodic(1, cell), if_periodic(2, cell)};
   p.vol = Real(plan.vol);
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
   p.cfm = Real(s.solver.cfm);

@@ -45,25 +45,29 @@ double motion_power(Context& c, int n, const FrameStep<double>& frame, double la
       .x[0];
 }
 
-/// Writes fields of n particles in SI units, along the scene's axes and in the order of ids to
+/// Writes fields of the particles in SI units, along the scene's axes and in the order of ids to
 /// memory of the executor; null: not wanted.
 template <class Context, class Out>
-void export_state(Context& c, int n, Out* position, Out* velocity, Out* density) {
+void export_state(Context& c, Out* position, Out* velocity, Out* density) {
   const Double3 origin = c.scene.origin();
   const Axes& axes = c.plan.axes;
   const auto from = [&](int k) { return origin[std::size_t(axes.of[k])]; };
-  const int* place = c.order_of_ids(c.ids(), n);
-  c.exec.items(n, ExportPass<typename Context::Real, Out>{c.scene.h(),
-                                                          c.scene.fluid.rest_density,
-                                                          {from(0), from(1), from(2)},
-                                                          axes,
-                                                          c.position(),
-                                                          c.velocity(),
-                                                          c.density(),
-                                                          place,
-                                                          position,
-                                                          velocity,
-                                                          density});
+  const int n = c.host_rows();
+  const ExportPass<typename Context::Real, Out> pass{c.scene.h(),
+                                                     c.scene.fluid.rest_density,
+                                                     {from(0), from(1), from(2)},
+                                                     axes,
+                                                     c.position(),
+                                                     c.velocity(),
+                                                     c.density(),
+                                                     c.order_of_ids(c.ids(), n),
+                                                     position,
+                                                     velocity,
+                                                     density};
+  if (c.images())
+    c.exec.items(c.rows(), pass);
+  else
+    c.exec.items(n, pass);
   c.exec.mark("download");
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/scene/periodic.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/solver_state.h"
@@ -25,11 +26,15 @@ struct FramePlaces {
 /// Displacements of particles, h.
 struct Moves {
   double squares = 0, farthest = 0;  ///< sum of squares; largest
-  /// From a to b, both of 3n coordinates. The sum is in the order of the particles.
-  void add(const std::vector<double>& a, const std::vector<double>& b) {
+  /// From a to b, both of 3n coordinates. The sum is in the order of the particles. period: h, of
+  /// periodic axes, 0 of others.
+  void add(const std::vector<double>& a, const std::vector<double>& b, const Double3& period = {}) {
     for (std::size_t k = 0; k < a.size(); k += 3) {
       double squared = 0;
-      for (std::size_t c = k; c < k + 3; ++c) squared += (b[c] - a[c]) * (b[c] - a[c]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = shortest(b[k + c] - a[k + c], period[c]);
+        squared += d * d;
+      }
       squares += squared;
       farthest_squared_ = std::max(farthest_squared_, squared);
     }

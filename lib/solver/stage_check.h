@@ -103,6 +103,7 @@ class StageCheck {
       }
     };
     for (std::size_t k = 0; k < id.size(); ++k) {
+      if (is_image(id[k])) continue;
       const double values[] = {double(x[k].x), double(x[k].y), double(x[k].z), double(x[k].w),
                                double(v[k].x), double(v[k].y), double(v[k].z), double(density[k])};
       bool finite = true;

@@ -88,7 +88,7 @@ SolverState download_state(C& c, const std::vector<const char*>& from) {
     return from[std::size_t(std::find(state.begin(), state.end(), &f) - state.begin())];
   };
   const int* id = reinterpret_cast<const int*>(at(field::id));
-  const int n = c.host_rows(
+  const int n = c.host_particles(
       reinterpret_cast<const RowState*>(changes_rows(c.scene) ? at(field::row_state) : nullptr));
   const int* place = c.order_of_ids(id, n);
   const auto values = [&](const FieldInfo& f) {
@@ -187,8 +187,8 @@ class SavedState {
   }
 
  private:
-  /// rows: so many are copied of the fields of particles. Arrays have room for many more, which takes
-  /// no memory on the host until it is written.
+  /// rows: so many are copied of the fields of particles. Arrays have room for many more, which
+  /// takes no memory on the host until it is written.
   template <class C>
   void make_room(C& c, std::size_t rows) {
     const auto& state = c.plan.program.state;

@@ -34,6 +34,17 @@ struct FieldMemory {
   std::size_t bytes;
 };
 
+/// The images of an executor that has none (lib/exec/periodic/periodic_rows.h).
+struct NoImages {
+  static int all() { return 0; }
+  static int before_sort() { return 0; }
+  static int particles() { return 0; }
+  static void begin(int) {}
+  static void all_own(auto&, int) {}
+  static void wrap(auto&) {}
+  static bool leave(auto&) { return false; }
+};
+
 template <class C, class P>
 class Granted;
 
@@ -77,9 +88,27 @@ struct StepContext {
     else
       return capacity();
   }
-  /// The same for the host, which waits for it. Throws Error(guard) if there were too many.
-  int host_rows() { return host_rows(data(field::row_state)); }
-  int host_rows(const RowState* state) {
+  /// What is known of images beyond periodic faces; null if there are none.
+  auto* images() {
+    if constexpr (requires { exec.images(); })
+      return exec.images();
+    else
+      return static_cast<NoImages*>(nullptr);
+  }
+  /// The number of rows for the host, which waits for it. Throws Error(guard) if there were too
+  /// many.
+  int host_rows() {
+    if (auto* all = images()) return all->all();
+    return host_particles(data(field::row_state));
+  }
+  /// The number of rows before the last sort.
+  int rows_of_sort() {
+    if (auto* all = images()) return all->before_sort();
+    return host_rows();
+  }
+  /// The same as host_rows() without images.
+  int host_particles(const RowState* state) {
+    if (auto* all = images()) return all->particles();
     if (!pbf::changes_rows(scene)) return capacity();
     RowState now;
     exec.to_host(state, 1, &now);

@@ -112,7 +112,7 @@ class StepSolver final : public Solver, public Inspection {
     return s;
   }
   void set_state(const SolverState& s) override {
-    check_state(s, plan_.capacity, changes_rows(scene_));
+    check_state(s, plan_.most_particles(), changes_rows(scene_));
     stepper_->set_state(s, double(s.updates) * scene_.time.step);
     updates_ = s.updates;
     steps_ = s.steps;

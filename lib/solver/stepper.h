@@ -11,6 +11,7 @@
 #include "lib/solver/executor.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/launched_rows.h"
+#include "lib/solver/other_rows.h"
 #include "lib/solver/read_sums.h"
 #include "lib/solver/results.h"
 #include "lib/solver/stage_check.h"
@@ -30,8 +31,7 @@ class Stepper {
   /// States and traces that the stepper returns are along the scene's axes.
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, InternalState<Real> first)
       : plan_(plan), c_(exec, scene, plan), program_(&plan.program) {
-    if constexpr (has_ranks)
-      if (auto* rows = c_.exec.rows()) rows->begin(first, c_.p, plan, scene);
+    begin_rows(c_, first);
     c_.launched = int(first.id.size());
     c_.make(first);
     find_pairs();
@@ -43,14 +43,15 @@ class Stepper {
   void step(int updates) {
     if (updates <= 0) return;
     c_.exec.begin();
-    if constexpr (has_ranks)
-      if (auto* rows = c_.exec.rows()) {
-        rows->in_batch(true);
-        for (int k = 0; k < updates; ++k)
-          for (const Steps* s : steps_on_ranks(*program_, c_.scene)) run(*s);
-        rows->in_batch(false);
-        return moved();
+    if (const auto steps = steps_with_other_rows(c_, *program_); !steps.empty()) {
+      in_batch(c_, true);
+      for (int k = 0; k < updates; ++k) {
+        wrap_rows(c_);
+        for (const Steps* s : steps) run(*s);
       }
+      in_batch(c_, false);
+      return moved();
+    }
     run(program_->first);
     run(program_->rest);
     for (int k = 1; k < updates; ++k) {
@@ -84,11 +85,11 @@ class Stepper {
   }
 
   int capacity() const { return c_.capacity(); }
-  /// The present number of particles, for which the host waits if it changes.
-  int rows() { return c_.host_rows(); }
+  /// The present number of particles here, for which the host waits if it changes.
+  int rows() { return c_.host_particles(c_.data(field::row_state)); }
   /// The same over all ranks.
   int particles() {
-    if constexpr (has_ranks)
+    if constexpr (has_ranks<Context>)
       if (auto* rows = c_.exec.rows()) return rows->particles();
     return rows();
   }
@@ -133,14 +134,16 @@ class Stepper {
   /// Readings of the gauges; means since the last call with Interval::ends.
   std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 
-  /// Leaves the rows of this rank alone, before its state is read or kept. Updates go on with the
-  /// same bits.
+  /// Leaves the rows of this rank alone, without images, before its state is read or kept. Updates
+  /// go on with the same bits.
   void drop_ghosts() {
-    if constexpr (has_ranks)
-      if (auto* rows = c_.exec.rows(); rows && rows->drop_ghosts(c_)) {
-        forget();
-        moved();
-      }
+    const auto sort = [&] {
+      c_.exec.begin();
+      launch(Passes::template index_of<Sort>());
+    };
+    if (!drop_other_rows(c_, sort)) return;
+    forget();
+    moved();
   }
   std::vector<int> ids() { return c_.ids_in_order(c_.ids(), rows()); }
   /// A state with positions only.
@@ -150,7 +153,7 @@ class Stepper {
     const int n = rows();
     s.position = downloaded(c_, field::position, c_.bytes_of(field::position), std::size_t(n),
                             c_.order_of_ids(c_.ids(), n));
-    if constexpr (has_ranks)
+    if constexpr (has_ranks<Context>)
       if (c_.exec.rows())  // not all particles
         for (const int id : ids()) s.id.push_back(id);
     return s;
@@ -166,20 +169,21 @@ class Stepper {
   void set_state(const SolverState& s, double time) {
     upload_state(c_, s);
     c_.launched = int(s.id.size());
-    all_own(c_.launched);
+    all_own_rows(c_, c_.launched);
     c_.for_features([&](auto& memory) { memory.stand(c_, time); });
     forget();
     moved();
   }
   void save(Saved& s) {
-    if constexpr (has_ranks)
+    if constexpr (has_ranks<Context>)
       if (auto* rows = c_.exec.rows())
         return s.save_rows(c_, {rows->first(), rows->last()}, rows->row_state());
+    drop_ghosts();
     s.save(c_);
   }
   void restore(Saved& s) {
     s.restore(c_);
-    all_own(rows());
+    all_own_rows(c_, rows());
     forget();
     moved();
   }
@@ -214,13 +218,13 @@ class Stepper {
   void ready_to_export(bool density) {
     c_.exec.begin();
     if (density) sum_density();
-    drop_ghosts();
+    c_.images() ? wrap_rows(c_) : drop_ghosts();  // rows of images are left out
   }
   /// Writes fields in SI units, along the scene's axes and in the order of ids to memory of the
   /// executor; null: not wanted. Call ready_to_export() first.
   template <class Out>
   void export_to(Out* position, Out* velocity, Out* density) {
-    export_state(c_, rows(), position, velocity, density);
+    export_state(c_, position, velocity, density);
   }
 
   /// To be called after particles have moved, also by recorded updates (an even number of them):
@@ -230,12 +234,6 @@ class Stepper {
   std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
 
  private:
-  static constexpr bool has_ranks = requires(Exec & e) { e.rows(); };
-  /// After rows 0 ... n - 1 were set: without ghosts.
-  void all_own([[maybe_unused]] int n) {
-    if constexpr (has_ranks)
-      if (auto* rows = c_.exec.rows()) rows->all_own(c_, n);
-  }
   void forget() {
     c_.for_features([&](auto& memory) { memory.forget(c_); });
   }
@@ -278,6 +276,7 @@ class Stepper {
   void step_seen(const Seen& seen) {
     c_.exec.begin();
     int substep = -1;
+    wrap_rows(c_);
     run(program_->update, [&](int index) {
       if (index == Passes::template index_of<Predict>()) ++substep;
       const bool start = index <= Passes::template index_of<MakeLists>();

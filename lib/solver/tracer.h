@@ -46,7 +46,7 @@ class Tracer {
  public:
   Tracer(Context& c, const Axes& axes, const TraceOptions& options)
       : c_(c),
-        n_(std::size_t(c.capacity())),
+        n_(changes_rows(c.scene) ? 0 : std::size_t(c.host_particles(nullptr))),
         axes_(axes),
         options_(options),
         random_(options.seed) {
@@ -96,26 +96,28 @@ class Tracer {
     const Lists& lists = c_.lists;
     auto& exec = c_.exec;
     typename Context::template Buffer<int> size, begin, flat;
-    size.resize(n_);
-    exec.items(int(n_), ListSizePass<Lists>{lists, size.data()});
-    std::vector<int> sizes = host(size.data()), starts(n_);
+    const auto rows = std::size_t(c_.host_rows());
+    size.resize(rows);
+    exec.items(c_.rows(), ListSizePass<Lists>{lists, size.data()});
+    std::vector<int> sizes = host(size.data(), rows), starts(rows);
+    id_ = host(c_.ids(), rows);
     int sum = 0;
-    for (std::size_t k = 0; k < n_; ++k) starts[k] = sum, sum += sizes[k];
+    for (std::size_t k = 0; k < rows; ++k) {
+      if (!is_particle(k)) sizes[k] = 0;
+      starts[k] = sum, sum += sizes[k];
+    }
     if (n_ > 0) most_terms_ = 1 + *std::max_element(sizes.begin(), sizes.end());
-    begin.resize(n_);
-    exec.to_device(starts.data(), n_, begin.data());
+    begin.resize(rows);
+    exec.to_device(starts.data(), rows, begin.data());
     flat.resize(std::size_t(sum) + 1);
-    exec.items(int(n_), FlatListPass<Lists>{lists, int(n_), begin.data(), flat.data()});
+    exec.items(c_.rows(), FlatListPass<Lists>{lists, int(rows), begin.data(), flat.data()});
     std::vector<int> all(std::size_t(sum), 0);
     exec.to_host(flat.data(), all.size(), all.data());
-    id_ = host(c_.ids());
     by_id(sizes, starts, all);
   }
 
-  template <class T>
-  std::vector<T> host(const T* from) {
-    return host(from, n_);
-  }
+  /// Whether row k is that of a particle, not of an image (kernels/pass_images.h).
+  bool is_particle(std::size_t k) const { return id_[k] >= 0 && !is_image(id_[k]); }
   template <class T>
   std::vector<T> host(const T* from, std::size_t n) {
     std::vector<T> v(n);
@@ -127,22 +129,23 @@ class Tracer {
   template <class T, class Component>
   void array(const Written& w, int components, T* from, const Component& component, int sign = 1) {
     const Shown& shown = w.field->shown;
+    const auto rows = std::size_t(shown.before_sort ? c_.rows_of_sort() : c_.host_rows());
     const std::vector<int> named =
-        shown.row ? host(c_.template data<int>(*shown.row)) : std::vector<int>{};
+        shown.row ? host(c_.template data<int>(*shown.row), rows) : std::vector<int>{};
     std::vector<T> all =
         shown.row ? host(from, std::size_t(c_.rows_of(*w.field))) : std::vector<T>{};
-    std::vector<T> v = shown.row ? std::vector<T>(n_) : host(from);
+    std::vector<T> v = shown.row ? std::vector<T>(rows) : host(from, rows);
     for (std::size_t k = 0; k < named.size(); ++k)
       if (named[k] >= 0) v[k] = all[std::size_t(named[k])];
-    id_ = host(shown.before_sort ? c_.template data<int>(other<field::id>) : c_.ids());
+    id_ = host(shown.before_sort ? c_.template data<int>(other<field::id>) : c_.ids(), rows);
     trace_.arrays.push_back(
         {stage_, iteration_, w.quantity, w.unit, components, {}, w.stage != nullptr});
     TraceArray& to = trace_.arrays.back();
     to.values.resize(n_ * std::size_t(components));
     const TraceArray* follow = followed(to);
     using Scalar = std::remove_reference_t<decltype(component(v[0], 0))>;
-    for (std::size_t k = 0; k < n_; ++k)
-      for (int c = 0; c < components; ++c) {
+    for (std::size_t k = 0; k < rows; ++k)
+      for (int c = 0; is_particle(k) && c < components; ++c) {
         Scalar& x = component(v[k], c);
         const std::size_t row = std::size_t(id_[k]) * std::size_t(components) +
                                 std::size_t(components == 3 ? axes_.of[c] : c);
@@ -151,7 +154,7 @@ class Tracer {
         } else {
           x = rounded(x);
           to.values[row] = sign * double(x);
-          if (follow) x = rounded(Real(sign * follow->values[row]));
+          if (follow) x = rounded(Real(sign * followed_value(*follow, row, w, c, double(x))));
         }
       }
     if constexpr (!std::is_integral_v<Scalar>) {
@@ -161,7 +164,7 @@ class Tracer {
       if (shown.row)
         c_.exec.to_device(all.data(), all.size(), from);
       else
-        c_.exec.to_device(v.data(), n_, from);
+        c_.exec.to_device(v.data(), rows, from);
     }
   }
   /// The array of the other trace that corresponds to `mine`, or null.
@@ -177,6 +180,17 @@ class Tracer {
     options_.follow = nullptr;
     return nullptr;
   }
+  /// The value of the other trace. Places near a periodic face may be at the opposite one there:
+  /// images belong to this side's.
+  double followed_value(const TraceArray& follow, std::size_t row, const Written& w, int axis,
+                        double mine) const {
+    const double other = follow.values[row], period = double((&c_.p.period.x)[axis]);
+    const bool place = w.part == Written::vector && &w.field->primary() == &field::position;
+    if (!place || !(period > 0)) return other;
+    return other - mine > period / 2   ? other - period
+           : mine - other > period / 2 ? other + period
+                                       : other;
+  }
   Real rounded(Real x) {
     if (amplitude_ == 0) return x;
     const double r = 2 * random_.uniform() - 1;
@@ -186,12 +200,15 @@ class Tracer {
              const std::vector<int>& all) {
     auto& begin = trace_.neighbor_begin;
     begin.assign(n_ + 1, 0);
-    for (std::size_t k = 0; k < n_; ++k) begin[std::size_t(id_[k]) + 1] = sizes[k];
+    for (std::size_t k = 0; k < id_.size(); ++k)
+      if (is_particle(k)) begin[std::size_t(id_[k]) + 1] = sizes[k];
     for (std::size_t k = 0; k < n_; ++k) begin[k + 1] += begin[k];
     trace_.neighbors.resize(all.size());
-    for (std::size_t k = 0; k < n_; ++k) {
+    for (std::size_t k = 0; k < id_.size(); ++k) {
+      if (!is_particle(k)) continue;
       auto* to = trace_.neighbors.data() + begin[std::size_t(id_[k])];
-      for (int m = 0; m < sizes[k]; ++m) to[m] = id_[std::size_t(all[std::size_t(starts[k] + m)])];
+      for (int m = 0; m < sizes[k]; ++m)
+        to[m] = particle_of(id_[std::size_t(all[std::size_t(starts[k] + m)])]);
       std::sort(to, to + sizes[k]);
     }
   }

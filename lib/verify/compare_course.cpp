@@ -15,8 +15,9 @@ namespace {
 std::vector<double> positions(Solver& solver) { return solver.state(StateOf::positions).position; }
 
 /// Infinite if a position is not finite, also on both sides.
-Distance strict_distance(const std::vector<double>& x, const std::vector<double>& y) {
-  const Distance d = distance(x, y, [](double a, double b) { return a - b; });
+Distance strict_distance(const std::vector<double>& x, const std::vector<double>& y,
+                         const Double3& period) {
+  const Distance d = distance(x, y, period, [](double a, double b) { return a - b; });
   return std::isnan(d.rms) ? Distance{HUGE_VAL, HUGE_VAL} : d;
 }
 
@@ -138,6 +139,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   ComparePart near;
   near.name = "short horizon";
   CompareRow row{"distance of a particle, rms", "h", 0, 0, 0, 0, 0, Verdict::same};
+  const Double3 period = periods_in_h(*c.scene);
   const double apart = 0.1 / c.scene->fluid.smoothing_ratio;  // a tenth of the spacing, h
   double spread = 0, share = -1;
   first_failure = -1;
@@ -145,7 +147,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   for (int t = 1; t <= updates; ++t) {
     advance(*c.a, 1);
     advance(*c.b, 1);
-    const Distance d = strict_distance(positions(*c.a), positions(*c.b));
+    const Distance d = strict_distance(positions(*c.a), positions(*c.b), period);
     double now = 0;
     if (!c.same_bits) {
       advance(*c.reference, 1);
@@ -154,7 +156,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
         // Different random rounding in every update.
         c.members[m]->inspection()->trace(
             {c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
-        now = std::max(now, strict_distance(positions(*c.members[m]), r).rms);
+        now = std::max(now, strict_distance(positions(*c.members[m]), r, period).rms);
       }
       spread = std::max(spread, now);
     }

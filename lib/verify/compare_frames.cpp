@@ -177,7 +177,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
       const std::vector<double> all = numbers_of(s.fields[0]);
       return rows.all() ? all : rows_of(all, common, 3);
     };
-    const Distance e = distance(places(x, rows.a), places(y, rows.b));
+    const Distance e = distance(places(x, rows.a), places(y, rows.b), periods(a.scene));
     bytes = bytes && rows.all() && same_numbers(x, y);
     last = e.rms / h;
     const double update = double(x.update);

@@ -79,13 +79,13 @@ double scale_of(const Reading& a, const Reading& b) {
   return scale;
 }
 
-Distance distance(const std::vector<double>& x, const std::vector<double>& y,
+Distance distance(const std::vector<double>& x, const std::vector<double>& y, const Double3& period,
                   double (*difference)(double, double)) {
   Distance d;
   for (std::size_t i = 0; i < x.size(); i += 3) {
     double r2 = 0;
-    for (std::size_t k = i; k < i + 3; ++k) {
-      const double e = difference(x[k], y[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double e = shortest(difference(x[i + k], y[i + k]), period[k]);
       r2 += e * e;
     }
     d.worst = std::max(d.worst, std::sqrt(r2));
@@ -93,6 +93,12 @@ Distance distance(const std::vector<double>& x, const std::vector<double>& y,
   }
   d.rms = std::sqrt(d.rms / double(std::max<std::size_t>(x.size() / 3, 1)));
   return d;
+}
+
+Double3 periods_in_h(const Scene& scene) {
+  Double3 p = periods(scene);
+  for (double& length : p) length /= scene.h();
+  return p;
 }
 
 CommonRows common_rows(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& b) {

@@ -10,6 +10,7 @@
 #include "lib/io/run_file.h"
 #include "lib/program/plan.h"
 #include "lib/scene/keys.h"
+#include "lib/scene/periodic.h"
 #include "lib/verify/compare.h"
 
 namespace pbf::verify_module {
@@ -90,9 +91,12 @@ double scale_of(const Reading& a, const Reading& b);
 struct Distance {
   double rms = 0, worst = 0;  ///< m
 };
-/// Distance between particles at x and at y, both in the order of the same ids.
-Distance distance(const std::vector<double>& x, const std::vector<double>& y,
+/// Distance between particles at x and at y, both in the order of the same ids. period: of the
+/// axes, in the unit of x; 0: not periodic.
+Distance distance(const std::vector<double>& x, const std::vector<double>& y, const Double3& period,
                   double (*difference)(double, double) = apart);
+/// periods() in h.
+Double3 periods_in_h(const Scene& scene);
 
 /// The rows of particles that two sides have both. Empty lists: all rows, which are the same
 /// particles in the same order.

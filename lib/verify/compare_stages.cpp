@@ -18,10 +18,14 @@ struct Size {
   double worst = 0, rms = 0, scale = 0;
 };
 
-Size difference(const std::vector<double>& a, const std::vector<double>& b) {
+/// period: of the axes, h; 0: not periodic. A place at one face is also one at the other.
+Size difference(const TraceArray& of_a, const TraceArray& of_b, const Double3& period) {
+  const std::vector<double>&a = of_a.values, &b = of_b.values;
+  const bool places = of_a.quantity == "position" && of_a.components == 3;
   Size s;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    const double d = apart(a[k], b[k]);
+    double d = apart(a[k], b[k]);
+    if (places && std::isfinite(d)) d = std::fabs(shortest(d, period[k % 3]));
     s.worst = std::max(s.worst, d);
     s.rms += d * d;
     if (std::isfinite(a[k])) s.scale = std::max(s.scale, std::fabs(a[k]));
@@ -63,12 +67,13 @@ Noise noise_floor(const Comparison& c, const SolverState& start, const StepTrace
   reference = c.reference->inspection()->trace({0, 1, &a});
   const std::vector<Reading> readings = c.take(*c.reference, 1);
   Noise noise{std::vector<double>(reference.arrays.size(), 0), {}};
+  const Double3 period = periods_in_h(*c.scene);
   for (std::size_t m = 0; m < c.members.size(); ++m) {
     c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
     const StepTrace t = c.members[m]->inspection()->trace({c.u, c.settings->seed + m, &a});
     for (std::size_t k = 0; k < noise.arrays.size(); ++k)
-      noise.arrays[k] = std::max(noise.arrays[k],
-                                 difference(reference.arrays[k].values, t.arrays[k].values).worst);
+      noise.arrays[k] =
+          std::max(noise.arrays[k], difference(reference.arrays[k], t.arrays[k], period).worst);
     raise_to_distance(noise.readings, c.take(*c.members[m], 1), readings);
   }
   return noise;
@@ -95,17 +100,18 @@ void take_out_inherited(const Comparison& c, const SolverState& start, const Ste
 }
 
 /// Bins may differ if a coordinate is within rounding of a border; borders are half a cell apart
-/// along every axis with bins. Returns the largest distance from a border among particles whose
-/// bins differ.
+/// along every axis with bins, and at the ends of periodic axes. Returns the largest distance from
+/// a border among particles whose bins differ.
 Size bin_difference(const TraceArray& a, const TraceArray& b, const std::vector<double>& position,
-                    double border, int dimensions) {
+                    double border, int dimensions, const Double3& period) {
   Size s;
   for (std::size_t i = 0; i < a.values.size(); ++i) {
     s.scale = std::max(s.scale, a.values[i]);
     if (a.values[i] == b.values[i]) continue;
     double nearest = border;
     for (std::size_t k = 3 * i; k < 3 * i + 3; k += dimensions == 2 ? 2 : 1)
-      nearest = std::min(nearest, std::fabs(std::remainder(position[k], border)));
+      for (const double at : {position[k], shortest(position[k], period[k % 3])})
+        nearest = std::min(nearest, std::fabs(std::remainder(at, border)));
     s.worst = std::max(s.worst, std::max(nearest, std::numeric_limits<double>::min()));
     s.rms += 1;
   }
@@ -114,7 +120,8 @@ Size bin_difference(const TraceArray& a, const TraceArray& b, const std::vector<
 
 /// Sets of neighbors may differ in pairs whose distance is within rounding of h. Returns the
 /// largest |distance - h| of a pair that only one side has; rms: the number of such pairs.
-Size set_difference(const StepTrace& a, const StepTrace& b, const std::vector<double>& position) {
+Size set_difference(const StepTrace& a, const StepTrace& b, const std::vector<double>& position,
+                    const Double3& period) {
   Size s;
   s.scale = 1;
   std::vector<std::int32_t> only;
@@ -127,7 +134,8 @@ Size set_difference(const StepTrace& a, const StepTrace& b, const std::vector<do
     for (const std::int32_t j : only) {
       double d2 = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const double d = position[3 * i + k] - position[3 * std::size_t(j) + k];
+        const double d =
+            shortest(position[3 * i + k] - position[3 * std::size_t(j) + k], period[k]);
         d2 += d * d;
       }
       s.worst = std::max(
@@ -182,11 +190,12 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     part.rows.push_back(r);
   };
   const std::vector<double>& position = values_of(a, "grid", "position");
+  const Double3 period = periods_in_h(*c.scene);
   double position_tolerance = 0;
   bool lists_done = false;
   const auto add_lists = [&] {  // once, before what is summed over them
     if (!std::exchange(lists_done, true))
-      add("neighbors: pairs", "h", set_difference(a, b, position),
+      add("neighbors: pairs", "h", set_difference(a, b, position, period),
           c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
   };
   const std::size_t common = std::min(a.arrays.size(), b.arrays.size());
@@ -196,11 +205,11 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     if (x.stage != "predict" && x.stage != "grid") add_lists();
     if (x.quantity == "bin") {
       add(name_of(x), "h",
-          bin_difference(x, y, position, c.plan->cell_edge / 2, c.scene->dimensions),
+          bin_difference(x, y, position, c.plan->cell_edge / 2, c.scene->dimensions, period),
           position_tolerance, x.stage);
       continue;
     }
-    const Size s = difference(x.values, y.values);
+    const Size s = difference(x, y, period);
     const double tolerance =
         c.same_bits
             ? 0

@@ -11,6 +11,13 @@ const Real pi = 3.141592653589793238462643383279502884L;
 
 Real length(const V& a) { return sqrtl(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 V sub(const V& a, const V& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+/// a - b for the images of both that are nearest to each other.
+V apart(const V& a, const V& b, const Settings& c) {
+  V d = sub(a, b);
+  for (int k = 0; k < 3; ++k)
+    if (c.period[k] > 0) d[k] -= c.period[k] * roundl(d[k] / c.period[k]);
+  return d;
+}
 void axpy(V& y, Real a, const V& x) {
   for (int k = 0; k < 3; ++k) y[k] += a * x[k];
 }
@@ -147,7 +154,7 @@ std::vector<Real> densities(const std::vector<V>& x, const Settings& c) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     Real sum = 0;
     for (std::size_t j = 0; j < x.size(); ++j) {
-      const Real r = length(sub(x[i], x[j]));
+      const Real r = length(apart(x[i], x[j], c));
       sum += c.mass * (c.paper ? poly6(r, c) : spiky(r, c));
     }
     out.push_back(sum + c.rest_density * walls(x[i], c).density);
@@ -189,7 +196,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
   std::vector<std::vector<std::size_t>> pairs(n);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
-      if (i != j && length(sub(s.x[i], s.x[j])) < c.h) pairs[i].push_back(j);
+      if (i != j && length(apart(s.x[i], s.x[j], c)) < c.h) pairs[i].push_back(j);
 
   const Real m = c.mass / c.rest_density;  // volume, m^3
   s.density.assign(n, c.rest_density);
@@ -206,7 +213,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
       Real ratio = m * kernel(0) + wall[i].density, squares = 0;
       V own = wall[i].gradient;
       for (std::size_t j : pairs[i]) {
-        const V d = sub(s.x[i], s.x[j]);
+        const V d = apart(s.x[i], s.x[j], c);
         ratio += m * kernel(length(d));
         V g = spiky_gradient(d, c);
         axpy(own, m, g);
@@ -225,10 +232,10 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
     for (std::size_t i = 0; i < n; ++i) {
       V delta{};
       for (std::size_t j : pairs[i]) {
-        V d = sub(s.x[i], s.x[j]);
+        V d = apart(s.x[i], s.x[j], c);
         if (c.order == 2) {  // a third of the way back to the start of the step
           for (Real& a : d) a *= 2;
-          axpy(d, 1, sub(old[i], old[j]));
+          axpy(d, 1, apart(old[i], old[j], c));
           for (Real& a : d) a /= 3;
         }
         Real w = lambda[i] + lambda[j];
@@ -263,7 +270,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
       for (std::size_t j : pairs[i])
         axpy(s.v[i],
              now * c.xsph * (c.mass / s.density[i] + c.mass / s.density[j]) / 2 *
-                 kernel(length(sub(s.x[i], s.x[j]))),
+                 kernel(length(apart(s.x[i], s.x[j], c))),
              sub(v[j], v[i]));
   }
   if (c.vorticity != 0) {
@@ -271,8 +278,9 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
     std::vector<Real> approach(n);  // rms rate at which neighbors come nearer, 1/s
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j : pairs[i]) {
-        const V d = sub(s.x[j], s.x[i]), dv = sub(s.v[j], s.v[i]);
-        axpy(curl[i], c.mass / s.density[j], cross(spiky_gradient(sub(s.x[i], s.x[j]), c), dv));
+        const V d = apart(s.x[j], s.x[i], c), dv = sub(s.v[j], s.v[i]);
+        axpy(curl[i], c.mass / s.density[j],
+             cross(spiky_gradient(apart(s.x[i], s.x[j], c), c), dv));
         const Real along = d[0] * dv[0] + d[1] * dv[1] + d[2] * dv[2], r = length(d);
         if (along < 0)
           approach[i] += c.mass / s.density[j] * spiky(r, c) * powl(along / (r * r), 2);
@@ -284,7 +292,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
       V eta{};
       for (std::size_t j : pairs[i])
         axpy(eta, c.mass / s.density[j] * (length(curl[j]) - length(curl[i])),
-             spiky_gradient(sub(s.x[i], s.x[j]), c));
+             spiky_gradient(apart(s.x[i], s.x[j], c), c));
       const Real size = length(eta) + 0.1L * length(curl[i]) / c.h;
       if (size == 0) continue;
       const Real gain = c.dt * std::min(c.vorticity, 2 * approach[i]);

@@ -16,6 +16,7 @@ struct Settings {
   int iterations = 4;
   int substeps = 1;            // of dt together, on one list
   std::array<bool, 6> open{};  // x_min, x_max, y_min ...: no wall
+  V period{};                  // of axes whose faces are joined: pairs are those of nearest images
   bool levels = false;
   Real spacing = 0;  // with levels
   bool paper = false, two_sided = false, wall_density = true, under_relax = false;

@@ -92,6 +92,12 @@ inline oracle::Settings settings_of(const Case& c) {
   const char* faces[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
   for (std::size_t f = 0; f < 6; ++f)
     o.open[f] = std::count(s.domain.open.begin(), s.domain.open.end(), faces[f]) > 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const std::string& axis : s.domain.periodic)
+      if (axis[0] == char('x' + k)) {
+        o.period[k] = s.domain.max[k] - s.domain.min[k];
+        o.open[2 * k] = o.open[2 * k + 1] = true;
+      }
   o.damping = s.solver.velocity_damping;
   o.paper = s.solver.kernels == pbf::KernelMode::paper;
   o.margin = s.solver.wall_margin;
@@ -137,7 +143,9 @@ inline Difference against_oracle(const Case& c, int updates = 1) {
   const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
   for (std::size_t i = 0; i < s.x.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
-      d.position = std::max(d.position, double(fabsl(x[3 * i + k] - s.x[i][k]) / o.h));
+      long double way = x[3 * i + k] - s.x[i][k];
+      if (o.period[k] > 0) way = remainderl(way, o.period[k]);
+      d.position = std::max(d.position, double(fabsl(way) / o.h));
       d.velocity = std::max(d.velocity, double(fabsl(v[3 * i + k] - s.v[i][k]) * o.dt / o.h));
     }
   return d;

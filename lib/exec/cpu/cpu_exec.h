@@ -93,7 +93,9 @@ class CpuExec : public CpuRows, protected CpuThreads {
     in_pieces<1>(
         rows.last,
         [&](int first, int last) {
-          for (int i = first; i < last; ++i) pass(i);
+          each_run(rows, first, last, [&](int begin, int end) {
+            for (int i = begin; i < end; ++i) pass(i);
+          });
         },
         rows.first);
   }
@@ -107,12 +109,14 @@ class CpuExec : public CpuRows, protected CpuThreads {
     const int width = 1 << lane_bits(simd_, sizeof(Real));
     in_pieces<1>(
         rows.last,
-        [&](int first, int last) {
-          // The lists of a group are read together, so the rows before the first whole group go
-          // one by one. The bits are the same.
-          const int whole = std::min((first + width - 1) / width * width, last);
-          for (int i = first; i < whole; ++i) sum_over_neighbors(pass, i);
-          sum_over_neighbors(simd_, pass, whole, last);
+        [&](int begin, int end) {
+          each_run(rows, begin, end, [&](int first, int last) {
+            // The lists of a group are read together, so the rows before the first whole group go
+            // one by one. The bits are the same.
+            const int whole = std::min((first + width - 1) / width * width, last);
+            for (int i = first; i < whole; ++i) sum_over_neighbors(pass, i);
+            sum_over_neighbors(simd_, pass, whole, last);
+          });
         },
         rows.first);
   }
@@ -223,10 +227,11 @@ class CpuExec : public CpuRows, protected CpuThreads {
       scratch.reserve(list_entries_);
       const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
       ChunkedLists::Group* groups = groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk);
-      const std::size_t used =
-          p.dimensions == 2
-              ? make_lists<2>(simd_, position, bin_start, p, first, last, far, groups, scratch)
-              : make_lists<3>(simd_, position, bin_start, p, first, last, far, groups, scratch);
+      const std::size_t used = p.dimensions == 2
+                                   ? make_lists<2>(simd_, position, bin_start, p, rows.id, first,
+                                                   last, far, groups, scratch)
+                                   : make_lists<3>(simd_, position, bin_start, p, rows.id, first,
+                                                   last, far, groups, scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with a reserve, shrink only if far too large: sizes change little between updates.
       const std::size_t capacity = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);

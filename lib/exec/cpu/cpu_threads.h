@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernels/neighbors.h"
+#include "kernels/row_state.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -22,6 +23,19 @@ class CpuThreads {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n - from > kChunk / share)
     for (int first = from / piece * piece; first < n; first += piece)
       f(std::max(first, from), std::min(n - first, piece) + first);
+  }
+  /// Calls f(begin, end) for the rows first ... last - 1, or for each run of rows among them that
+  /// are no images.
+  template <class F>
+  static void each_run(const RowRange& rows, int first, int last, const F& f) {
+    for (int end = last; first < last; first = end, end = last) {
+      if (rows.id) {
+        while (first < last && rows.leaves_out(first)) ++first;
+        for (end = first; end < last && !rows.leaves_out(end);) ++end;
+        if (first == end) return;
+      }
+      f(first, end);
+    }
   }
   /// The sum of term(i), which does not depend on the order of terms.
   template <class Sum, class Term>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/neighbors.h"
+#include "kernels/row_state.h"
 #include "lib/exec/cpu/close_pairs.h"
 
 namespace pbf::PBF_VARIANT {
@@ -70,10 +71,11 @@ struct ListScratch {
 };
 
 /// Writes the lists of particles first..last-1 of one chunk to `scratch.found` and returns the
-/// number of entries, with padding. groups: those of the chunk's particles. D: dimensions.
+/// number of entries, with padding. groups: those of the chunk's particles. id: null, or images
+/// have empty lists. D: dimensions.
 template <int D, class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_start,
-                       const Params<Real>& p, int first, int last, int far,
+                       const Params<Real>& p, const int* id, int first, int last, int far,
                        ChunkedLists::Group* groups, ListScratch& scratch) {
   const int bits = lane_bits(simd, sizeof(Real)), width = 1 << bits;
   NearbyParticles<Real, D> nearby;
@@ -82,7 +84,7 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
     std::size_t begin[17], longest = 0, at = 0;
     for (int l = 0; l < width; ++l) {
       begin[l] = begin[l + 1] = at;
-      if (i + l >= last) continue;
+      if (i + l >= last || (id && is_image(id[i + l]))) continue;
       const Vec3<Real> x = xyz(position[i + l]);
       const Candidates<Real, D>& c = nearby.of(simd, x, position, bin_start, p, far);
       make_room(scratch.single, at + std::size_t(c.count) + c.block);

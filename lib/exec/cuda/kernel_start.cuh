@@ -26,6 +26,13 @@ __device__ __forceinline__ int end_of(int n) { return n; }
 __device__ __forceinline__ int end_of(const CountedRows& rows) { return int(rows.state->rows); }
 __device__ __forceinline__ int end_of(const RowRange& rows) { return rows.last; }
 
+/// Whether a launch leaves out row i, which is below the end.
+__device__ __forceinline__ bool leaves_out(int, int) { return false; }
+__device__ __forceinline__ bool leaves_out(const CountedRows&, int) { return false; }
+__device__ __forceinline__ bool leaves_out(const RowRange& rows, int i) {
+  return rows.leaves_out(i);
+}
+
 /// First statement of every kernel, but for end_of(). A kernel is set up while the previous one
 /// ends, and waits here until that one is done (programmatic dependent launch, from sm_90 on). An
 /// explicit early trigger is slower: its blocks would occupy places that blocks of the previous

@@ -27,7 +27,7 @@ __global__ void __launch_bounds__(kBlock) item_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
   wait_for_previous();
   const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
-  if (i < n) pass(i);
+  if (i < n && !leaves_out(rows, i)) pass(i);
 }
 
 template <class Rows, class Pass>
@@ -35,7 +35,7 @@ __global__ void __launch_bounds__(kBlock) pair_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
   wait_for_previous();
   const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
-  if (i < n) sum_over_neighbors(pass, i);
+  if (i < n && !leaves_out(rows, i)) sum_over_neighbors(pass, i);
 }
 
 /// For items 0 .. *count - 1.
@@ -47,12 +47,20 @@ __global__ void __launch_bounds__(kBlock)
   for (int k = blockIdx.x * kBlock + threadIdx.x; k < n; k += gridDim.x * kBlock) pass(k);
 }
 
+/// The number of this thread, of which `lanes` share a row; behind those of all n rows if the row
+/// is left out, because every thread of a warp takes part in shuffles.
+template <int lanes, class Rows>
+__device__ __forceinline__ int thread_of_row(const Rows& rows, int n) {
+  const int thread = lanes * first_of(rows) + blockIdx.x * kBlock + threadIdx.x, i = thread / lanes;
+  return i < n && leaves_out(rows, i) ? thread + lanes * (n - i) : thread;
+}
+
 /// A neighbor sum by several threads per particle.
 template <int lanes, class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
   wait_for_previous();
-  const int thread = lanes * first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
+  const int thread = thread_of_row<lanes>(rows, n);
 #ifdef PBF_PINNED
   sum_in_order_by_lanes<lanes, kBlock>(pass, thread, n);
 #else
@@ -63,7 +71,7 @@ template <class Rows, class Real, int D>
 __global__ void __launch_bounds__(kBlock) list_lanes_kernel(Rows rows, ListPass<Real, D> pass) {
   const int n = end_of(rows);
   wait_for_previous();
-  pass.by_lanes(pass.lanes * first_of(rows) + blockIdx.x * kBlock + threadIdx.x, n);
+  pass.by_lanes(thread_of_row<ListPass<Real, D>::lanes>(rows, n), n);
 }
 
 }  // namespace pbf::PBF_VARIANT

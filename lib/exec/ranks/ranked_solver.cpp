@@ -23,6 +23,7 @@ Scene of_rank(Scene scene, const Plan& plan, int ranks) {
 /// Why a scene cannot run on several ranks; null: it can.
 const char* why_one_rank(const Scene& s) {
   if (changes_rows(s)) return "the number of its particles changes";
+  if (!s.domain.periodic.empty()) return "it has periodic axes (domain.periodic)";
   for (const Gauge& g : s.gauges)
     if (std::holds_alternative<gauge_keys::Flow>(g.kind))
       return "flow gauges count on one rank; leave them out";

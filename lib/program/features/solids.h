@@ -15,7 +15,7 @@
 namespace pbf::program_module {
 /// More than a box that stands still.
 inline bool has_more_than_walls(const Scene& s) { return has_solids(s) || has_motion(s); }
-inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
+inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.is_closed(); }
 /// Enough for all half cells of the grid.
 inline std::int64_t per_half_cell(const Sizes& n) {
   return n.bins / bins_per_cell(n.scene.dimensions);

@@ -115,6 +115,13 @@ TEST_CASE("the plan of ranks: one message per exchange, as counted by hand for 4
   CHECK(plan.bytes_per_ghost == 7 * 16 + 16 + 16 + 4);
 }
 
+TEST_CASE("a scene with periodic axes is refused on several ranks by its key") {
+  const RankScene m("configs/minimal", {"domain.periodic=[x]"});
+  CHECK_THROWS_WITH(
+      require_ranks(m.scene, m.plan, 2),
+      Catch::Contains("cannot run on several ranks: it has periodic axes (domain.periodic)"));
+}
+
 TEST_CASE("slabs: particles are shared equally, and every rank has a layer") {
   std::vector<std::int64_t> in_layer(20, 100);
   const Slabs four(in_layer, 4, 1);

@@ -195,6 +195,24 @@ TEST_CASE("prestabilize: a two-sided scene starts like a one-sided one, pulled n
   CHECK(same_particles(*one, *two));
 }
 
+TEST_CASE("prestabilize: a particle that crosses a periodic face has not moved through the box") {
+  const Scene s = parse(
+      "domain: {min: [0, 0, 0], max: [1, 1, 1], periodic: [x, y, z]}\n"
+      "fluid: {spacing: 0.1}\n"
+      "bodies: [{shape: random_box, min: [0, 0, 0], max: [1, 1, 1], count: 1000}]\n"
+      "gravity: [0, 0, 0]\ntime: {step: 0.01, end: 1}\n");
+  Start first = prepare(s, ".");
+  const auto solver = make_solver(s, first.plan, first.particles);
+  const std::vector<double> from = solver->state(StateOf::positions).position;
+  const Prestabilized p = prestabilize(*solver, s, first.plan);
+  const std::vector<double> to = solver->state(StateOf::positions).position;
+  int crossed = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) crossed += std::fabs(to[k] - from[k]) > 2.5;  // h
+  CHECK(crossed > 20);
+  CHECK(p.moved > 0.3);
+  CHECK(p.moved < 4);  // spacings; the box has 10
+}
+
 TEST_CASE("prestabilize: an over-full box ends it, and the text says that there is no room") {
   const Scene s = shipped("stiff/overfull", {"bodies[0].count=3000"});
   const Plan plan = make_plan(s, 3000);

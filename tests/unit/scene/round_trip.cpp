@@ -129,8 +129,9 @@ Scene scene_with_all_blocks() {
 }  // namespace
 
 TEST_CASE("resolved scene: reads back to an equal scene, bit for bit") {
-  const Scene plain = parse(kMinimal), other = unlike_default(), all = parse(reference_yaml());
-  for (const Scene& s : {plain, other, all}) {
+  const Scene plain = parse(kMinimal), other = unlike_default(), all = parse(reference_yaml()),
+              periodic = parse(kMinimal, {"domain.periodic=[x, y]"});
+  for (const Scene& s : {plain, other, all, periodic}) {
     const std::string text = resolved_yaml(s);
     CAPTURE(text);
     CHECK(parse(text) == s);
@@ -142,7 +143,9 @@ TEST_CASE("resolved scene: reads back to an equal scene, bit for bit") {
 TEST_CASE("resolved scene: each key of the table makes a difference when it changes") {
   // unlike_default differs from the default in every key, so a key that the table forgets or maps
   // to the wrong field is seen here.
-  const Scene other = unlike_default(), defaults = scene_with_all_blocks();
+  Scene other = unlike_default();
+  other.domain.periodic = {"z"};  // refused beside its obstacles and gravity
+  const Scene defaults = scene_with_all_blocks();
   for (const Key& key : scene_table().keys) {
     if (of_list(key) || key.path == "name") continue;
     CAPTURE(key.path);

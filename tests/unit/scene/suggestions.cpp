@@ -99,6 +99,7 @@ TEST_CASE("suggestions: what obstacles and bodies do not have is said, no key of
   CHECK(contains(suggested("bodies[].motion"), "solids that move as told are obstacles"));
   CHECK(contains(suggested("domain.friction"), "have no friction"));
   CHECK(suggested("domain.walls") == "domain.open");
+  CHECK(suggested("domain.pbc") == "domain.periodic");
   CHECK(suggested("viscosity.dynamic") == "viscosity.xsph");
   CHECK(suggested("viscosity.kind") == "viscosity.xsph");
   CHECK(contains(suggested("fluid.speed_of_sound"), "there is no equation of state"));
@@ -188,7 +189,8 @@ TEST_CASE("suggestions: in messages, with the entry of the list") {
        "tank_motion.axis: expected 3 numbers [x, y, z] or auto, got \"y\"; write [0, 1, 0]"},
       {"tank_motion: roll.csv\n", "; write tank_motion: {kind: file, path: roll.csv}"},
       {"fluid.viscosity: 0.001\n", "did you mean viscosity? It is a block at the top of the file"},
-      {"domain.periodic: [x]\n", "unknown key; there are no periodic boundaries"},
+      {"domain.cyclic: [x]\n",
+       "did you mean domain.periodic? It lists the axes whose faces are joined"},
       {"viscosity: 100\n", "got \"100\"; write {} or on"},  // out of its range
       {"output: 0.02\n", "write output: {every: 0.02}"},
       {"output: out/here\n", "expected a block {every: ...}, got \"out/here\"; write {} or on"},

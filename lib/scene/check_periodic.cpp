@@ -1,0 +1,135 @@
+// Rules for scenes with periodic axes.
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/boundary/obstacle.h"
+#include "lib/scene/periodic.h"
+#include "lib/scene/scene_rules.h"
+#include "lib/scene/surface.h"
+
+namespace pbf::scene_module {
+namespace {
+
+class PeriodicChecker : public SceneRules {
+ public:
+  using SceneRules::SceneRules;
+
+  void run() {
+    if (!good(s_.domain.periodic) || s_.domain.periodic.empty()) return;
+    check_axes();
+    const std::vector<int> axes = periodic_axes(s_);
+    if (axes.empty()) return;
+    for (const int a : axes) check_forces(std::size_t(a));
+    if (good(s_.solver.levels) && s_.solver.levels == LevelsMode::on)
+      add(s_.solver.levels,
+          "the grids of levels end at the faces of the domain, of which domain.periodic joins "
+          "some; "
+          "give off or auto");
+    if (s_.tank_motion && s_.tank_motion->axis)
+      add(s_.tank_motion->axis,
+          "the forces in a tank that turns depend on the place, so they have no period; give a "
+          "direction, or remove domain.periodic");
+    if (good(s_.domain.min, s_.domain.max, s_.fluid.spacing, s_.fluid.smoothing_ratio)) {
+      for (const int a : axes) check_length(std::size_t(a));
+      for (const Gauge& g : s_.gauges)
+        if (good(g.kind)) std::visit([&](const auto& keys) { check(keys, g); }, g.kind);
+      for (const Obstacle& o : s_.obstacles)
+        for (const int a : axes) check(o, std::size_t(a));
+    }
+  }
+
+ private:
+  void check_axes() {
+    for (const std::string& axis : s_.domain.periodic) {
+      if (flat() && axis == "y")
+        add(s_.domain.periodic, "y: with dimensions: 2 nothing moves along y; remove it");
+      if (good(s_.domain.open))
+        for (const std::string& face : s_.domain.open)
+          if (face[0] == axis[0])
+            add(s_.domain.open, "{} is joined to the opposite face (domain.periodic); remove one",
+                face);
+    }
+  }
+
+  void check_length(std::size_t a) {
+    const double length = s_.domain.max[a] - s_.domain.min[a], least = 3 * s_.h();
+    if (length > 0 && length < least * (1 - 1e-9))
+      add(s_.domain.periodic,
+          "{}: the domain is {} m long along it, and a particle would see images of its own "
+          "neighbors; give at least 3 smoothing lengths, {} m, or lower fluid.spacing",
+          kAxes[a], rounded(length), rounded(least));
+  }
+
+  /// What has a potential, or depends on the place, has no period.
+  void check_forces(std::size_t a) {
+    constexpr const char* kNoPotential =
+        "its component along {} is {}, and fluid that returns through a periodic face would fall "
+        "for ever; give 0, or remove {} from domain.periodic";
+    if (good(s_.gravity) && s_.gravity[a] != 0)
+      add(s_.gravity, kNoPotential, kAxes[a], s_.gravity[a], kAxes[a]);
+    if (s_.settle && s_.settle->gravity && good(s_.settle->gravity) &&
+        (*s_.settle->gravity)[a] != 0)
+      add(s_.settle->gravity, kNoPotential, kAxes[a], (*s_.settle->gravity)[a], kAxes[a]);
+  }
+
+  /// An obstacle has no images. Its fluid is up to kClear away from it
+  /// (lib/program/posed_solids.h).
+  void check(const Obstacle& o, std::size_t a) {
+    if (o.motion)
+      return add(o.motion->kind,
+                 "{} moves, and obstacles have no images beyond periodic faces; let it stand, or "
+                 "remove domain.periodic",
+                 o.name);
+    if (!good_obstacle(o)) return;
+    const Solid<double> solid = solid_in_metres(o, s_);
+    const Vec3<double> up{double(a == 0), double(a == 1), double(a == 2)};
+    const double middle[3] = {solid.center.x, solid.center.y, solid.center.z};
+    const double low = middle[a] - reach_along(solid, -1.0 * up, true),
+                 high = middle[a] + reach_along(solid, up, true), clear = kClear * s_.h(),
+                 from = s_.domain.min[a] + clear, to = s_.domain.max[a] - clear;
+    if (low < from - 1e-9 * clear || high > to + 1e-9 * clear)
+      add(o.name,
+          "reaches {0} = {1}, and obstacles have no images beyond periodic faces: leave 1.5 "
+          "smoothing lengths, {0} from {2} to {3}; the flow is the same if all is moved along {0}",
+          kAxes[a], rounded(low < from - 1e-9 * clear ? low : high), rounded(from), rounded(to));
+  }
+  static constexpr double kClear = 1.5;  ///< h
+  static double rounded(double x) { return std::stod(fmt::format("{:.6g}", x)); }
+
+  void check(const gauge_keys::Flow& g, const Gauge&) {
+    add(g.center,
+        "flow gauges take a return through a periodic face for flow back; read a velocity gauge, "
+        "or remove domain.periodic");
+  }
+  void check(const gauge_keys::Level& g, const Gauge&) {
+    const std::vector<int> across = axes_across_level(s_);
+    for (std::size_t k = 0; good(g.at) && k < std::min(across.size(), g.at.size()); ++k)
+      check_place(g.at, std::size_t(across[k]), g.at[k], s_.h());
+  }
+  void check(const gauge_keys::Velocity& g, const Gauge&) { check_places(g.at, s_.h()); }
+  void check(const gauge_keys::Pressure& g, const Gauge&) {
+    if (good(g.radius)) check_places(g.at, g.radius);
+  }
+  void check_places(const std::vector<double>& at, double reach) {
+    for (std::size_t a = 0; good(at) && a < 3 && at.size() == 3; ++a)
+      check_place(at, a, at[a], reach);
+  }
+  /// reach: m, of the gauge, which sees no images.
+  void check_place(const std::vector<double>& at, std::size_t a, double x, double reach) {
+    if (!s_.domain.is_periodic(int(a))) return;
+    const double low = s_.domain.min[a] + reach, high = s_.domain.max[a] - reach;
+    if (x < low - 1e-9 * reach || x > high + 1e-9 * reach)
+      add(at,
+          "{0} is {1}, and a gauge does not see through a periodic face: give {0} from {2} to {3}; "
+          "the flow is the same if all is moved along {0}",
+          kAxes[a], x, rounded(low), rounded(high));
+  }
+};
+
+}  // namespace
+
+void check_periodic(const PlacedScene& placed, Problems& problems) {
+  PeriodicChecker(placed, problems).run();
+}
+
+}  // namespace pbf::scene_module
