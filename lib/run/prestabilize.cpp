@@ -22,9 +22,9 @@ constexpr double kProgress = 0.75;     // largest useful ratio of the kicks afte
 constexpr double kStill = 1e-6;        // h, a negligible move if all is at rest
 
 /// Displacements from one call to the next, h. In the first one there are none.
-class Course {
+class Displacements {
  public:
-  explicit Course(Solver& solver) : solver_(solver) { next(); }
+  explicit Displacements(Solver& solver) : solver_(solver) { next(); }
   Moves next() {
     if (SplitRows* split = solver_.split()) return split->moves();
     std::vector<double> to = solver_.state(StateOf::positions).position;
@@ -71,7 +71,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
   p.kick = energy(n * std::pow(2 * p.before.compression_rms, 2));
   if (p.relieved() || p.before.non_finite > 0) return p;
-  Course positions(solver);
+  Displacements positions(solver);
   std::vector<Point> course;
   const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
   const std::int64_t most = std::max<std::int64_t>(kMostIterations / iterations, 32);
