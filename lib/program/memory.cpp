@@ -11,6 +11,7 @@
 #include "lib/program/list_memory.h"
 #include "lib/program/loads.h"
 #include "lib/program/plan.h"
+#include "lib/program/rank_plan.h"
 #include "lib/program/threads.h"
 
 namespace pbf::program_module {
@@ -89,6 +90,12 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
   return s.settle ? peak + 48 * n : peak;
 }
 
+bool is_relieved(const Scene& s, const Plan& plan) {
+  if (!s.solver.prestabilize || s.solver.iterations == 0) return false;
+  // A single body on its lattice has no compression.
+  return !plan.start.empty() || s.bodies.size() > 1 || !s.obstacles.empty();
+}
+
 /// Additional memory beside the solver while the start settles (lib/run/settle.h) or is relieved of
 /// compression (lib/run/prestabilize.h). The solver has no kept state yet.
 std::int64_t add_before_run(const Scene& s, const Plan& plan, const std::string& real,
@@ -100,13 +107,34 @@ std::int64_t add_before_run(const Scene& s, const Plan& plan, const std::string&
     add("positions of the settled start", "double", 3, plan.most_particles());
     start = 72 * plan.most_particles();
   }
-  if (!s.solver.prestabilize || s.solver.iterations == 0) return start;
-  // A single body on its lattice has no compression.
-  if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return start;
+  if (!is_relieved(s, plan)) return start;
   const std::int64_t n = plan.most_particles(), kept = n * (8 * size_of(real) + 4);
   add("positions around steps without time", "double", 3, 2 * n);
   if (s.settle) return std::max(start, 96 * n);
   return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
+}
+
+/// The same of a rank, for positions on their way to ranges of ids.
+std::int64_t add_moves(const Scene& s, const Plan& plan, MemoryPlan& memory) {
+  if (!s.settle && !is_relieved(s, plan)) return 0;
+  const std::int64_t n = plan.capacity;
+  Adder{memory, false, Held::start}("positions around steps without time", "double", 13, n);
+  return 104 * n;
+}
+/// Frames of a rank: its rows, those of its range of ids, and a field on the way.
+void add_split_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
+  const int scalars = downloaded_scalars(s);
+  if (scalars == 0) return;
+  const std::int64_t n = plan.capacity;
+  const std::string real = word(s.output ? s.output->precision : Precision::single);
+  if (about(s.backend).on_device) {
+    Adder{memory, true, Held::solver}("staging of a download", real, scalars, n);
+    Adder{memory, false, Held::solver}("pinned copy of a download", real, scalars, n);
+  }
+  const Adder add{memory, false, Held::output};
+  add("frame under way", real, scalars, n);
+  add("a field on its way to ranges of ids", real, 6, n);
+  add("ids of frames under way", "int64", 2, n);
 }
 
 /// Memory of frames and pictures: on the host beside the solver, and staging on the device. Returns
@@ -205,7 +233,9 @@ std::int64_t MemoryPlan::fixed_bytes(bool on_device) const {
   return bytes;
 }
 
-MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
+namespace {
+
+MemoryPlan memory_of(const Scene& s, const Plan& plan, bool rank) {
   MemoryPlan memory;
   const std::string real = word(s.precision);
   const std::int64_t bins =
@@ -216,10 +246,15 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
     add_cuda_lists(s, plan, bins, solver);
   else
     add_cpu_lists(s, plan, solver);
-  const std::int64_t stays = add_output(s, plan, memory);
+  std::int64_t stays = 0;
+  if (rank)
+    add_split_output(s, plan, memory);
+  else
+    stays = add_output(s, plan, memory);
   add_checkpoint(s, plan, real, memory);
   const std::int64_t start = add_start(s, plan, real, memory);
-  const std::int64_t relieved = add_before_run(s, plan, real, memory);
+  const std::int64_t relieved =
+      rank ? add_moves(s, plan, memory) : add_before_run(s, plan, real, memory);
   add_fixed(s, plan, memory);
   std::int64_t later = 0;
   for (const FixedMemory& f : memory.fixed) later += f.after_start ? f.bytes : 0;
@@ -229,6 +264,13 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   memory.host_arrays = std::max(start - later, sum(memory, false, Held::solver) + beside);
   memory.device_arrays = sum(memory, true, Held::solver);
   return memory;
+}
+
+}  // namespace
+
+MemoryPlan plan_memory(const Scene& s, const Plan& plan) { return memory_of(s, plan, false); }
+MemoryPlan plan_memory_of_rank(const Scene& s, const Plan& plan) {
+  return memory_of(s, plan, true);
 }
 
 std::vector<MemoryChoice> memory_choices(const Scene& scene, const Plan& plan) {

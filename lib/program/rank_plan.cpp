@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "lib/base/json.h"
@@ -14,15 +13,25 @@ namespace pbf::program_module {
 
 namespace {
 
-/// What is on rank 0 alone: arrays of all particles, at times that follow each other.
-std::int64_t bytes_of_all(const MemoryPlan& memory) {
-  std::map<Held, std::int64_t> sums;
-  for (const PlanArray& a : memory.arrays)
-    if (!a.on_device && a.held != Held::solver && !a.name.starts_with("initial "))
-      sums[a.held] += a.bytes;
-  std::int64_t most = 0;
-  for (const auto& [held, bytes] : sums) most = std::max(most, bytes);
-  return most;
+/// What is on rank 0 alone: pieces of what all ranks have, at times that follow each other, and
+/// what does not come in pieces.
+std::int64_t bytes_of_first(const Plan& plan, const Scene& s) {
+  // Of the start, of checkpoints, of a dataset.
+  const std::int64_t n = plan.particles, few = std::min(n, std::int64_t{1} << 16),
+                     piece = std::min(n, std::int64_t{1} << 18),
+                     chunk = std::min(n, std::int64_t{1} << 22);
+  std::int64_t start = 200 * few, output = s.checkpoint ? 160 * piece : 0;
+  for (const Body& b : s.bodies)
+    if (b.shape == Shape::file) start = 48 * n + 200 * few;
+  if (s.output) output = std::max(output, 16 * chunk);  // numbers of vertices
+  if (s.output && s.output->compression == Compression::gzip)
+    output = std::max(output,
+                      8 * 3 * std::int64_t(s.output->precision == Precision::dbl ? 8 : 4) * chunk);
+  std::int64_t pictures = 0;
+  if (s.render)
+    for (const PlanArray& a : plan.memory.arrays)
+      if (!a.on_device && a.held == Held::output) pictures += a.bytes;
+  return std::max(start, std::max(output, pictures));
 }
 
 }  // namespace
@@ -53,10 +62,10 @@ RankPlan plan_ranks(const Plan& plan, const Scene& s, int ranks) {
   // unequal shares, and for rows that come before others go.
   r.capacity = on_device ? part.capacity : 2 * plan.particles;
   Scene of_rank = s;
-  of_rank.output.reset(), of_rank.render.reset(), of_rank.checkpoint.reset();
-  const MemoryPlan memory = plan_memory(of_rank, part);
+  of_rank.render.reset();
+  const MemoryPlan memory = plan_memory_of_rank(of_rank, part);
   r.bytes = memory.host_peak();
-  r.first_bytes = r.bytes + bytes_of_all(plan.memory);
+  r.first_bytes = r.bytes + bytes_of_first(plan, s);
   r.device_bytes = on_device ? memory.device_peak() : 0;
   return r;
 }
@@ -70,8 +79,8 @@ std::string rank_text(const RankPlan& r) {
              "  {} messages to each adjacent rank per update: {} of rows at sorts, {} of ghosts\n"
              "  {} bytes per ghost and update; {} across a box full of fluid, from up to {} "
              "ghosts\n"
-             "  {} of memory on the host for each rank; {} on rank 0, which has all particles at "
-             "the start and in frames\n",
+             "  {} of memory on the host for each rank; {} on rank 0, through which pieces of all "
+             "particles go\n",
              r.messages(), r.sorts, r.exchanges, r.bytes_per_ghost,
              bytes_text(double(r.bytes_per_ghost * r.ghosts)), r.ghosts,
              bytes_text(double(r.bytes)), bytes_text(double(r.first_bytes))) +

@@ -19,8 +19,8 @@ struct RankPlan {
   /// Of a rank on one side, in fluid at rest that fills the cross-section.
   std::int64_t ghosts = 0;
   std::int64_t capacity = 0;  ///< rows of the arrays of a rank
-  /// Peak memory of a rank on the host, and of rank 0, which has all particles at the start, in
-  /// frames and in checkpoints; and of a rank on its device.
+  /// Peak memory of a rank on the host, and of rank 0, through which pieces of all particles go,
+  /// and which has all of them for pictures and of bodies from files; and of a rank on its device.
   std::int64_t bytes = 0, first_bytes = 0, device_bytes = 0;
 
   int messages() const { return exchanges + sorts; }
@@ -28,6 +28,8 @@ struct RankPlan {
 
 /// Without solver.tolerance, which repeats exchanges, and without the passes between updates.
 RankPlan plan_ranks(const Plan& plan, const Scene& scene, int ranks);
+/// plan_memory() of one of several ranks. plan: with the rows of the rank.
+MemoryPlan plan_memory_of_rank(const Scene& scene, const Plan& plan);
 std::string rank_text(const RankPlan& plan);
 Json rank_json(const RankPlan& plan);
 

@@ -23,9 +23,9 @@ constexpr double kProgress = 0.75;     // largest useful ratio of the kicks afte
 constexpr double kStill = 1e-6;        // h, a negligible move if all is at rest
 
 /// Displacements from one call to the next, h. In the first one there are none.
-class Course {
+class Displacements {
  public:
-  Course(Solver& solver, const Scene& s) : solver_(solver), period_(periods(s)) {
+  Displacements(Solver& solver, const Scene& s) : solver_(solver), period_(periods(s)) {
     for (double& length : period_) length /= s.h();
     next();
   }
@@ -76,7 +76,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
   p.kick = energy(n * std::pow(2 * p.before.compression_rms, 2));
   if (p.relieved() || p.before.non_finite > 0) return p;
-  Course positions(solver, s);
+  Displacements positions(solver, s);
   std::vector<Point> course;
   const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
   const std::int64_t most = std::max<std::int64_t>(kMostIterations / iterations, 32);
