@@ -60,6 +60,10 @@ std::int64_t image_rows(const Scene& s, std::int64_t particles) {
     outer *= length + (s.domain.is_periodic(a) ? 2.1 : 0);
     if (s.domain.is_periodic(a)) sets *= 2;
   }
+  if (sets > 1 && changes_rows(s))
+    throw Error(ExitCode::bad_input, "the number of particles of scene " + s.name +
+                                         " changes, and it has periodic axes (domain.periodic), "
+                                         "whose images are of a fixed number of particles");
   const double at_rest = (outer - inner) * std::pow(s.fluid.smoothing_ratio, s.dimensions);
   return std::int64_t(std::min(2 * at_rest + 256, double(particles) * double(sets - 1)));
 }

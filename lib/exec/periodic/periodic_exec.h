@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/pass_residual.h"
+#include "kernels/pass_shapes.h"
 #include "lib/exec/periodic/periodic_rows.h"
 
 namespace pbf::PBF_VARIANT {

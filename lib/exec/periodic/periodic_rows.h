@@ -6,6 +6,7 @@
 // Passes run for particles alone. All rows are in the memory of an executor.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>

@@ -30,6 +30,12 @@ TEST_CASE("a periodic axis has one more cell of the grid on each side, and rows 
   CHECK(large.images == std::int64_t(2 * 8 * (7.1 * 7.1 * 5 - 125) + 256));
 }
 
+TEST_CASE("a periodic scene in which particles come and go is refused by its key") {
+  Scene s = parse(kMinimal, {"domain.periodic=[x]"});
+  s.capacity = 1000;
+  CHECK(contains(error_of([&] { make_plan(s, 500); }), "periodic axes (domain.periodic)"));
+}
+
 TEST_CASE("solver.levels: auto is off in a periodic scene, and the plan says why") {
   const Scene s = parse(kMinimal, {"domain.periodic=[x]", "solver.levels=auto"});
   REQUIRE(why_no_levels(s));
