@@ -150,9 +150,9 @@ class Stepper {
   SolverState positions() {
     drop_ghosts();
     SolverState s;
-    const int n = rows();
-    s.position = downloaded(c_, field::position, c_.bytes_of(field::position), std::size_t(n),
-                            c_.order_of_ids(c_.ids(), n));
+    const int n = rows(), *order = c_.order_of_ids(c_.ids(), n);
+    const char* from = c_.bytes_of(field::position);
+    s.position = downloaded(c_, field::position, from, std::size_t(n), order);
     if constexpr (has_ranks<Context>)
       if (c_.exec.rows())  // not all particles
         for (const int id : ids()) s.id.push_back(id);
@@ -241,7 +241,6 @@ class Stepper {
     launch_pass<Passes>(pass, c_);
     c_.exec.mark(c_.booked(Passes::texts[std::size_t(pass)].stage));
   }
-
   void run(const Steps& steps) {
     run(steps, [](int) {});
   }
