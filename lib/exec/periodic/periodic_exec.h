@@ -67,7 +67,8 @@ class PeriodicExec : public Base {
   template <class Pass, class Body>
   void repeat_while(const char* stage, const Rows& rows, int times, const Pass& pass,
                     double tolerance, unsigned long long* repeats, const Body& body) {
-    if (!images_) return Base::repeat_while(stage, rows, times, pass, tolerance, repeats, body);
+    const typename Base::Rows& of_rank = rows;  // not another overload for this type
+    if (!images_) return Base::repeat_while(stage, of_rank, times, pass, tolerance, repeats, body);
     const std::uint64_t limit = residual_limit(tolerance, images_->particles());
     for (int k = 0; k < times; ++k) {
       const std::uint64_t sum = Base::sum_of(rows.all, WithoutImages<Pass>{pass, rows.id});
