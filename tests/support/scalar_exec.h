@@ -1,5 +1,5 @@
-// The executor of the CPU without vector instructions, which change no bit: a solver of a test's own
-// compiles in a fraction of the time.
+// The executor of the CPU without vector instructions, which change no bit: a solver of a test's
+// own compiles in a fraction of the time.
 #pragma once
 
 #include "lib/exec/cpu/cpu_exec.h"
