@@ -34,13 +34,14 @@ class PeriodicExec : public Base {
   }
 
   using Base::items, Base::pairs, Base::build_lists, Base::repeat_while;
+  /// Without images the launch is that of the rank, which may split it (RankExec::over()).
   template <ItemPass Pass>
   void items(const Rows& rows, const Pass& pass) {
-    Base::items(RowRange(rows), pass);
+    images_ ? Base::items(RowRange(rows), pass) : Base::items(of_rank(rows), pass);
   }
   template <PairPass Pass>
   void pairs(const Rows& rows, const Pass& pass) {
-    Base::pairs(RowRange(rows), pass);
+    images_ ? Base::pairs(RowRange(rows), pass) : Base::pairs(of_rank(rows), pass);
   }
   /// Rows near solids are listed with those of images.
   template <ItemPass Pass>
@@ -67,16 +68,14 @@ class PeriodicExec : public Base {
   template <class Pass, class Body>
   void repeat_while(const char* stage, const Rows& rows, int times, const Pass& pass,
                     double tolerance, unsigned long long* repeats, const Body& body) {
-    const typename Base::Rows& of_rank = rows;  // not another overload for this type
-    if (!images_) return Base::repeat_while(stage, of_rank, times, pass, tolerance, repeats, body);
-    const std::uint64_t limit = residual_limit(tolerance, images_->particles());
-    for (int k = 0; k < times; ++k) {
-      const std::uint64_t sum = Base::sum_of(rows.all, WithoutImages<Pass>{pass, rows.id});
-      this->mark(stage);
-      if (sum <= limit) return;
-      Base::add_one(repeats);
-      body();
-    }
+    if (!images_)
+      return Base::repeat_while(stage, of_rank(rows), times, pass, tolerance, repeats, body);
+    this->repeat_from_host(
+        stage, times, residual_limit(tolerance, images_->particles()), repeats,
+        [&] {
+          return Base::sum_of(rows.all, WithoutImages<Pass>{pass, rows.id});
+        },
+        body);
   }
   template <class Updates>
   void repeat(int updates, Updates& u) {
@@ -102,6 +101,8 @@ class PeriodicExec : public Base {
   }
 
  private:
+  /// As the type of the base: it has other overloads for any type.
+  static const typename Base::Rows& of_rank(const Rows& rows) { return rows; }
   int all(int n) const { return images_ ? images_->all() : n; }
   const int* ids() const { return images_ ? images_->ids() : nullptr; }
 

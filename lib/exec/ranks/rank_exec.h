@@ -134,15 +134,13 @@ class RankExec : public Base {
   void repeat_while(const char* stage, const Rows& rows, int times, const Pass& pass,
                     double tolerance, unsigned long long* repeats, const Body& body) {
     if (!rows_) return Base::repeat_while(stage, rows.all, times, pass, tolerance, repeats, body);
-    const std::uint64_t limit = residual_limit(tolerance, rows_->particles());
-    for (int k = 0; k < times; ++k) {
-      auto sum = std::int64_t(Base::sum_of(rows.last - rows.first, From<Pass>{pass, rows.first}));
-      ranks_->sum({&sum, 1});
-      this->mark(stage);
-      if (std::uint64_t(sum) <= limit) return;
-      if (ranks_->rank() == 0) Base::add_one(repeats);
-      body();
-    }
+    const auto sum = [&] {
+      auto s = std::int64_t(Base::sum_of(rows.last - rows.first, From<Pass>{pass, rows.first}));
+      ranks_->sum({&s, 1});
+      return std::uint64_t(s);
+    };
+    repeat_from_host(stage, times, residual_limit(tolerance, rows_->particles()), repeats, sum,
+                     body);
   }
   template <bool leave, class First, class Near, class Gather>
   void sort_by_bin(const char* stage, const First& of, const Near& near, int n, int bins,
@@ -201,6 +199,20 @@ class RankExec : public Base {
   template <class Sums>
   void add_up(std::vector<Sums>& sums) {
     if (rows_) rows_->add_up(sums);
+  }
+
+ protected:
+  /// repeat_while() with sums that the host waits for. Only one rank counts the repeats.
+  template <class Sum, class Body>
+  void repeat_from_host(const char* stage, int times, std::uint64_t limit,
+                        unsigned long long* repeats, const Sum& sum, const Body& body) {
+    for (int k = 0; k < times; ++k) {
+      const std::uint64_t now = sum();
+      this->mark(stage);
+      if (now <= limit) return;
+      if (!ranks_ || ranks_->rank() == 0) Base::add_one(repeats);
+      body();
+    }
   }
 
  private:
