@@ -59,6 +59,12 @@ struct SelectRowsPass {
   }
 };
 
+/// For rows that already have their bin.
+struct KnownBinPass {
+  int* bin;
+  PBF_HD void operator()(int) const {}
+};
+
 /// The fields of rows in a message: all of a row, then those of the next.
 struct RowFields {
   static constexpr int most = 16;

@@ -10,11 +10,13 @@
 namespace pbf::program_module {
 namespace {
 
-/// The fields that go along with the particles.
+/// The fields that go along with the particles. With them goes the bin: were it computed on two
+/// ranks, a compiler might round differently in two kernels, and ranks disagree about a row.
 Exchange::Fields carried(const Program& program) {
   Exchange::Fields out;
   for (const FieldInfo* f : program.fields)
     if (f->is_per_particle() && (f->life == Life::rows || f->life == Life::state)) out.push_back(f);
+  out.push_back(&field::bin);
   return out;
 }
 

@@ -37,6 +37,13 @@ void in_batch([[maybe_unused]] C& c, [[maybe_unused]] bool now) {
   if constexpr (has_ranks<C>)
     if (auto* rows = c.exec.rows()) rows->in_batch(now);
 }
+/// Whether the batch will be repeated anyway, so that its other updates need not run.
+template <class C>
+bool has_lost_rows([[maybe_unused]] C& c) {
+  if constexpr (has_ranks<C>)
+    if (auto* rows = c.exec.rows()) return rows->lost();
+  return false;
+}
 /// Before each update, and before particles are read.
 template <class C>
 void wrap_rows(C& c) {

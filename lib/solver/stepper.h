@@ -45,7 +45,7 @@ class Stepper {
     c_.exec.begin();
     if (const auto steps = steps_with_other_rows(c_, *program_); !steps.empty()) {
       in_batch(c_, true);
-      for (int k = 0; k < updates; ++k) {
+      for (int k = 0; k < updates && !has_lost_rows(c_); ++k) {
         wrap_rows(c_);
         for (const Steps* s : steps) run(*s);
       }

@@ -168,10 +168,9 @@ class RankExec : public Base {
   bool grow_lists(int n) {
     const bool grown = Base::grow_lists(n);
     if (!rows_ || !Base::lists_overflow) return grown;
-    std::array<std::int64_t, 2> all{grown, rows_->lost()};
-    ranks_->sum(all);
-    rows_->forget_lost(all[1] > 0);
-    return all[0] > 0 || all[1] > 0;
+    std::int64_t any = grown;
+    ranks_->sum({&any, 1});
+    return rows_->forget_lost() || any > 0;
   }
   template <class Updates>
   void repeat(int updates, Updates& u) {
@@ -234,7 +233,8 @@ class RankExec : public Base {
       const GatherOwnPass<Gather> own{gather, start + rows_->slabs().low(me) * of_layer,
                                       start + rows_->slabs().high(me) * of_layer,
                                       not_counted_.data()};
-      Base::template sort_by_bin<true>(stage, of, near, all, bins, id, order, start, own);
+      Base::template sort_by_bin<true>(stage, KnownBinPass{of.bin}, near, all, bins, id, order,
+                                       start, own);
     }
   }
   /// Calls launch(range) for own rows: at once, or for those at the cuts beside the others.

@@ -97,8 +97,7 @@ class RankRows {
                 sums.size() * sizeof(Sums) / sizeof(std::int64_t)});
   }
 
-  /// Whether the last before() has exchanged anything.
-  bool exchanged() const { return has_exchanged_; }
+  bool exchanged() const { return has_exchanged_; }  ///< in the last before()
   /// Before each launch of pass P: exchanges what it needs. False if another rank does it for all.
   template <class P, class C>
   bool before(C& c) {
@@ -111,7 +110,7 @@ class RankRows {
     if (ranks_.rank() != 0)
       for (const FieldInfo* f : e.from_zero) clear(c, *f);
     for (const FieldInfo* f : pass.flips) c.flip(*f);  // named as they are after the flips
-    if (!e.ghosts.empty()) copy_ghosts(c, e.ghosts);
+    if (!e.ghosts.empty() && !lost()) copy_ghosts(c, e.ghosts);
     for (const FieldInfo* f : pass.flips) c.flip(*f);
     overlap_ = beside_exchange_.contains(&pass) && last_ - first_ >= kOverlapFrom;
     sorts_ = !e.rows.empty();
@@ -134,6 +133,8 @@ class RankRows {
       select(to);
       return to;
     };
+    counted_ = false;
+    if (lost()) return all_;
     counted_ = Exec::lists_overflow && in_batch_ && counts_known_ && careful_ == 0;
     all_ = counted_ ? routes_.exchange_counted(exec, sorted_, bin, lists)
                     : routes_.exchange(exec, sorted_, bin, lists);
@@ -148,15 +149,22 @@ class RankRows {
   }
   /// Updates in a batch may lose rows if the batch is repeated where lost() is true.
   void in_batch(bool now) { in_batch_ = now; }
-  bool lost() const { return lost_; }
-  /// After a batch. any: on any rank. Then no row may be lost in the next batch, and in more and
-  /// more batches if that goes on.
-  void forget_lost(bool any) {
+  /// Whether any rank has lost a row, the same on all ranks. From then on they exchange no rows,
+  /// because they no longer agree about the sizes of messages.
+  bool lost() {
+    agree();
+    return lost_;
+  }
+  /// To be called on all ranks at the end of a batch: whether a rank has lost a row. Then none may
+  /// be lost in the next batch, and in more and more batches if that goes on.
+  bool forget_lost() {
+    const bool any = lost();
     lost_ = false;
     if (any)
       careful_ = 1 << std::min(++losses_, 20);
     else if (careful_ > 0)
       --careful_;
+    return any;
   }
 
  private:
@@ -165,6 +173,15 @@ class RankRows {
   /// Own rows from which a pass beside an exchange takes longer than its additional launches.
   static constexpr int kOverlapFrom = 200000;
 
+  /// All ranks learn whether one of them has lost a row in the last sort. The host gets here while
+  /// the device makes lists, so that nothing waits.
+  void agree() {
+    if (agreed_) return;
+    agreed_ = true;
+    std::int64_t any = lost_;
+    ranks_.sum({&any, 1});
+    lost_ = any > 0;
+  }
   /// Until the next sort no rows are known to be at a cut.
   void only_own(int n) { first_ = low_end_ = high_begin_ = 0, last_ = all_ = n; }
   template <class C>
@@ -183,7 +200,7 @@ class RankRows {
   }
   template <class Int, class C>
   void add_up_as(C& c, const FieldInfo& f) {
-    Int* at = reinterpret_cast<Int*>(c.bytes_of(f));
+    auto* at = reinterpret_cast<Int*>(c.bytes_of(f));
     std::vector<Int> mine(bytes_in_all(c, f) / sizeof(Int));
     c.exec.to_host(at, mine.size(), mine.data());
     std::vector<std::int64_t> sums(mine.begin(), mine.end());
@@ -229,7 +246,8 @@ class RankRows {
     std::ranges::copy(counts, from.begin() + 5);
     const std::array<int, 10> at = c.exec.values(from);
     first_ = at[0], low_end_ = at[1], high_begin_ = at[2], last_ = at[3], all_ = at[4];
-    if (counted_ && !routes_.learn({at[5], at[6], at[7], at[8], at[9]})) lost_ = true;
+    if (counted_) lost_ = !routes_.learn({at[5], at[6], at[7], at[8], at[9]});
+    agreed_ = !counted_;
     if (me == 0) low_end_ = first_;
     if (me == ranks_.size() - 1) high_begin_ = last_;
   }
@@ -271,7 +289,7 @@ class RankRows {
   int first_ = 0, last_ = 0, all_ = 0, low_end_ = 0, high_begin_ = 0;  ///< rows
   int particles_ = 0, sorts_done_ = 0;
   bool sorts_ = false, has_exchanged_ = false, overlap_ = false;
-  bool in_batch_ = false, counts_known_ = false, counted_ = false, lost_ = false;
+  bool in_batch_ = false, counts_known_ = false, counted_ = false, lost_ = false, agreed_ = true;
   int losses_ = 0, careful_ = 0;  ///< batches
   SortedRows sorted_;
   std::set<const PassInfo*> beside_exchange_;

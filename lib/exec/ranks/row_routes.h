@@ -121,8 +121,8 @@ class RowRoutes {
     int all = rows.all;
     for (const Incoming& i : in) {
       const auto* head = static_cast<const std::uint32_t*>(i.data);
-      int n = most_[i.from < me ? come_down : come_up];
-      if (all + n > rows.capacity) n = rows.capacity - all, crowded_ = true;
+      int& n = most_[i.from < me ? come_down : come_up];
+      n = std::min(n, rows.capacity - all);
       exec.items(n * words, UnpackCountedPass{{rows.fields, head + kHeadWords, all}, rows.id});
       all += n;
       heads_[i.from < me ? 0 : 1] = reinterpret_cast<const int*>(head);
@@ -139,10 +139,9 @@ class RowRoutes {
   /// After exchange_counted(). False if a row found no room, or went to another rank than the
   /// adjacent ones: the sort lacks it.
   bool learn(const Counts& counts) {
-    bool good = counts[go_far] == 0 && !crowded_;
+    bool good = counts[go_far] == 0;
     for (const int k : {go_down, go_up, come_down, come_up}) good = good && counts[k] <= most_[k];
     known_ = counts;
-    crowded_ = false;
     return good;
   }
 
@@ -198,7 +197,6 @@ class RowRoutes {
   Buffer<std::uint32_t> send_, receive_;
   Counts known_{}, most_{};
   std::array<const int*, 2> heads_{};
-  bool crowded_ = false;
 };
 
 }  // namespace pbf::PBF_VARIANT

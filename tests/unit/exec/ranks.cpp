@@ -112,7 +112,7 @@ TEST_CASE("the plan of ranks: one message per exchange, as counted by hand for 4
   // 4 times (x, lambda) for delta, and 3 times x* for lambda. Positions come with the rows.
   CHECK(plan.exchanges == 4 + 3);
   CHECK(plan.sorts == 1);
-  CHECK(plan.bytes_per_ghost == 7 * 16 + 16 + 16 + 4);
+  CHECK(plan.bytes_per_ghost == 7 * 16 + 16 + 16 + 4 + 4);  // x, v, id, bin
 }
 
 TEST_CASE("a scene with periodic axes is refused on several ranks by its key") {
