@@ -6,6 +6,7 @@
 #include "kernels/atomics.h"
 #include "kernels/cell_index.h"
 #include "kernels/params.h"
+#include "kernels/pass_shapes.h"
 #include "kernels/step_counts.h"
 
 namespace pbf::PBF_VARIANT {
@@ -50,13 +51,29 @@ struct RowLists {
 };
 /// Runs `First`, which gives a row its bin, and lists the row.
 template <class First>
-struct SelectRowsPass {
-  First first;
+struct SelectRowsPass : First {
   RowLists to;
-  PBF_HD void operator()(int i) const {
-    first(i);
-    to.add(i, first.bin[i]);
+  PBF_HD void operator()(int i) const requires ItemPass<First> {
+    First::operator()(i);
+    to.add(i, First::bin[i]);
   }
+  template <class Own, class Sum>
+  PBF_HD void finish(int i, const Own& own, const Sum& sum) const {
+    First::finish(i, own, sum);
+    to.add(i, First::bin[i]);
+  }
+};
+/// Lists rows that have their bin.
+struct ListRowsPass {
+  const int* bin;
+  RowLists to;
+  PBF_HD void operator()(int i) const { to.add(i, bin[i]); }
+};
+
+/// For rows that already have their bin.
+struct KnownBinPass {
+  int* bin;
+  PBF_HD void operator()(int) const {}
 };
 
 /// For rows that already have their bin.

@@ -102,19 +102,14 @@ std::vector<Exchange> exchanges(const Program& program) {
   return out;
 }
 
-std::vector<const Steps*> steps_on_ranks(const Program& program, const Scene& scene) {
-  if (has_more_than_walls(scene) || !program.has_pairs()) return {&program.update};
-  return {&program.first, &program.rest, &program.last};
+bool unfused_on_ranks(const Program& program, const Scene& scene) {
+  return has_more_than_walls(scene) || !program.has_pairs();
 }
 std::vector<Exchange> exchanges_on_ranks(const Program& program, const Scene& scene) {
+  if (!unfused_on_ranks(program, scene)) return exchanges(program);
   RankState state;
-  std::vector<Exchange> all;
-  for (int turn = 0; turn < 2; ++turn) {  // the first one is the update before
-    all.clear();
-    for (const Steps* s : steps_on_ranks(program, scene))
-      for (Exchange& e : exchanges(program, *s, state)) all.push_back(std::move(e));
-  }
-  return all;
+  exchanges(program, program.update, state);
+  return exchanges(program, program.update, state);
 }
 
 }  // namespace pbf::program_module

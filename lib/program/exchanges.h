@@ -62,10 +62,11 @@ std::vector<Exchange> exchanges(const Program& program, const Steps& steps, Rank
 /// The same for an update in the middle of a run: program.next and program.rest.
 std::vector<Exchange> exchanges(const Program& program);
 
-/// The steps of an update on several ranks, whose particles go to other ranks in the sort. The sort
-/// predicts them, too, unless there is more than walls: rows near solids are predicted in place.
-std::vector<const Steps*> steps_on_ranks(const Program& program, const Scene& scene);
-/// The exchanges of such an update in the middle of a run.
+/// Whether several ranks run the passes of an update one by one, because rows near solids are
+/// predicted in place, and particles go to other ranks only then. With walls alone their sort
+/// predicts, and is fused with the pass before it, as on one rank.
+bool unfused_on_ranks(const Program& program, const Scene& scene);
+/// The exchanges of an update in the middle of a run on several ranks.
 std::vector<Exchange> exchanges_on_ranks(const Program& program, const Scene& scene);
 
 }  // namespace pbf::program_module

@@ -22,14 +22,12 @@ void begin_rows(C& c, const InternalState<typename C::Real>& first) {
     if (auto* rows = c.exec.rows()) rows->begin(first, c.p, c.plan, c.scene);
   if (auto* images = c.images()) images->begin(int(first.id.size()));
 }
-/// The steps of an update in whose sort rows come and go, so that no pass of it may be fused with
-/// one of the next; empty if there is none.
+/// Whether no pass of an update may be fused with one of the next: rows come and go between them.
 template <class C>
-std::vector<const Steps*> steps_with_other_rows(C& c, const Program& program) {
+bool is_unfused(C& c, const Program& program) {
   if constexpr (has_ranks<C>)
-    if (c.exec.rows()) return steps_on_ranks(program, c.scene);
-  if (c.images()) return {&program.update};
-  return {};
+    if (c.exec.rows()) return unfused_on_ranks(program, c.scene);
+  return c.images() != nullptr;
 }
 /// Whether the updates from now on are repeated if rows were lost.
 template <class C>

@@ -43,22 +43,19 @@ class Stepper {
   void step(int updates) {
     if (updates <= 0) return;
     c_.exec.begin();
-    if (const auto steps = steps_with_other_rows(c_, *program_); !steps.empty()) {
-      in_batch(c_, true);
-      for (int k = 0; k < updates && !has_lost_rows(c_); ++k) {
+    in_batch(c_, true);
+    const bool unfused = is_unfused(c_, *program_);
+    for (int k = 0; k < updates && !has_lost_rows(c_); ++k) {
+      if (unfused) {
         wrap_rows(c_);
-        for (const Steps* s : steps) run(*s);
+        run(program_->update);
+        continue;
       }
-      in_batch(c_, false);
-      return moved();
-    }
-    run(program_->first);
-    run(program_->rest);
-    for (int k = 1; k < updates; ++k) {
-      run(program_->next);
+      run(k == 0 ? program_->first : program_->next);
       run(program_->rest);
     }
-    run(program_->last);
+    if (!unfused) run(program_->last);
+    in_batch(c_, false);
     moved();
   }
 

@@ -208,13 +208,14 @@ class CudaExec : public CudaSums {
   /// repeat() without graphs: the host takes part in every update.
   template <class Updates>
   void repeat_unrecorded(int updates, Updates& u) {
-    for (; updates > 0; --updates, --since_profile_) {
-      if (since_profile_ > 0) {
-        u.step(1);
-        continue;
-      }
-      since_profile_ = kSampleEvery;
-      sample(u);
+    while (updates > 0) {
+      const int plain = std::min(updates, since_profile_);
+      if (plain > 0)
+        u.step(plain);
+      else
+        sample(u);
+      updates -= std::max(plain, 1);
+      since_profile_ = plain > 0 ? since_profile_ - plain : kSampleEvery - 1;
     }
   }
 

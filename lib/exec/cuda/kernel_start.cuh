@@ -18,10 +18,13 @@ constexpr int kBlock = 128;
 /// the load: see CudaExec::rows_changed().
 inline int most(int n) { return n; }
 inline int most(const CountedRows& rows) { return rows.most; }
-inline int most(const RowRange& rows) { return rows.last - rows.first; }
+/// The threads of a warp have adjacent rows from a multiple of 32 on: those of some other range
+/// would touch more lines of memory.
+PBF_HD constexpr int aligned(const RowRange& rows) { return rows.first & ~31; }
+inline int most(const RowRange& rows) { return rows.last - aligned(rows); }
 __device__ __forceinline__ int first_of(int) { return 0; }
 __device__ __forceinline__ int first_of(const CountedRows&) { return 0; }
-__device__ __forceinline__ int first_of(const RowRange& rows) { return rows.first; }
+__device__ __forceinline__ int first_of(const RowRange& rows) { return aligned(rows); }
 __device__ __forceinline__ int end_of(int n) { return n; }
 __device__ __forceinline__ int end_of(const CountedRows& rows) { return int(rows.state->rows); }
 __device__ __forceinline__ int end_of(const RowRange& rows) { return rows.last; }
@@ -30,7 +33,7 @@ __device__ __forceinline__ int end_of(const RowRange& rows) { return rows.last; 
 __device__ __forceinline__ bool leaves_out(int, int) { return false; }
 __device__ __forceinline__ bool leaves_out(const CountedRows&, int) { return false; }
 __device__ __forceinline__ bool leaves_out(const RowRange& rows, int i) {
-  return rows.leaves_out(i);
+  return i < rows.first || rows.leaves_out(i);
 }
 
 /// First statement of every kernel, but for end_of(). A kernel is set up while the previous one

@@ -215,16 +215,22 @@ class RankExec : public Base {
   }
 
  private:
-  /// Ranks sort in a pass of its own, without solids: a particle goes to its rank with its bin.
+  /// Takes rows to their ranks between the pass that gives them their bins and the sort. Rows near
+  /// solids, which such a pass leaves out, must have been predicted before.
   template <class First, class Near, class Gather>
   void sort_on_ranks(const char* stage, const First& of, const Near& near, const Rows& rows,
                      int bins, const int* id, int* order, int* start, const Gather& gather) {
-    if constexpr (PairPass<First> || requires { near.pass; }) {
+    if constexpr (requires { near.pass; }) {
       throw Error(ExitCode::internal, "several ranks cannot run this sort");
     } else {
       const int of_layer = bins / rows_->layers();
       const int all = rows_->route(*this, of.bin, of_layer, [&](const RowLists& to) {
-        Base::items(RowRange(rows), SelectRowsPass<First>{of, to});
+        over(rows, [&](const RowRange& r) {
+          if constexpr (PairPass<First>)
+            Base::pairs(r, SelectRowsPass<First>{of, to});
+          else
+            Base::items(r, SelectRowsPass<First>{of, to});
+        });
         this->mark(stage);
       });
       this->mark("exchange");

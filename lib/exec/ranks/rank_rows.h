@@ -15,6 +15,7 @@
 
 #include "kernels/pass_rank_rows.h"
 #include "kernels/row_state.h"
+#include "lib/exec/ranks/row_fields.h"
 #include "lib/exec/ranks/row_routes.h"
 #include "lib/program/exchanges.h"
 #include "lib/program/features/solids.h"
@@ -58,10 +59,13 @@ class RankRows {
       ++in_layer[std::size_t(cell_coordinate(x.z, p.inv_cell, p.cells_z))];
     ranks_.sum(in_layer);
     slabs_ = Slabs(in_layer, ranks_.size(), layers_per_unit(plan));
-    const std::vector<Exchange> all = exchanges_on_ranks(plan.program, scene);
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (all[k].pass && (!all[k].ghosts.empty() || !all[(k + 1) % all.size()].ghosts.empty()))
-        beside_exchange_.insert(all[k].pass);
+    const Program& program = plan.program;
+    RankState state;
+    for (const std::vector<Exchange>& all :
+         {exchanges_on_ranks(program, scene), exchanges(program, program.update, state)})
+      for (std::size_t k = 0; k < all.size(); ++k)
+        if (all[k].pass && (!all[k].ghosts.empty() || !all[(k + 1) % all.size()].ghosts.empty()))
+          beside_exchange_.insert(all[k].pass);
     particles_ = int(std::accumulate(in_layer.begin(), in_layer.end(), std::int64_t(0)));
     only_own(int(s.id.size()));
   }
@@ -116,7 +120,7 @@ class RankRows {
     sorts_ = !e.rows.empty();
     if (sorts_) {
       if (++sorts_done_ % kBalanceEvery == 0) balance(c);
-      sorted_ = {row_fields(c, e.rows), c.ids(), c.capacity(), {first_, last_}, all_};
+      sorted_ = {row_fields(c, e.rows, pass), c.ids(), c.capacity(), {first_, last_}, all_};
     }
     for (const FieldInfo* f : e.sums_within) clear(c, *f);
     add_within_ = [this, &c, sums = e.sums_within] {
@@ -125,16 +129,20 @@ class RankRows {
     return ranks_.rank() == 0 || !e.on_one_rank;
   }
   /// Within a pass that sorts: takes rows to their ranks. select(lists) runs a SelectRowsPass for
-  /// the own rows. bin: of each row; bins: of a layer. Returns the number of rows to sort.
+  /// the own rows, once. bin: of each row; bins: of a layer. Returns the number of rows to sort.
   template <class Select>
   int route(Exec& exec, const int* bin, int bins, const Select& select) {
+    bool selected = false;
     const auto lists = [&] {
       const RowLists to = routes_.lists(exec, slabs_, bins);
-      select(to);
+      if (std::exchange(selected, true))
+        exec.items(RowRange{first_, last_}, ListRowsPass{bin, to});
+      else
+        select(to);
       return to;
     };
     counted_ = false;
-    if (lost()) return all_;
+    if (lost()) return lists(), routes_.leave_ghosts(exec, sorted_), all_;
     counted_ = Exec::lists_overflow && in_batch_ && counts_known_ && careful_ == 0;
     all_ = counted_ ? routes_.exchange_counted(exec, sorted_, bin, lists)
                     : routes_.exchange(exec, sorted_, bin, lists);
@@ -250,18 +258,6 @@ class RankRows {
     agreed_ = !counted_;
     if (me == 0) low_end_ = first_;
     if (me == ranks_.size() - 1) high_begin_ = last_;
-  }
-  template <class C>
-  static RowFields row_fields(C& c, const Fields& fields) {
-    RowFields rows;
-    if (fields.size() > std::size_t(RowFields::most))
-      throw Error(ExitCode::internal, "too many fields go along with particles");
-    for (const FieldInfo* f : fields) {
-      const int k = rows.fields++;
-      rows.rows[k] = reinterpret_cast<std::uint32_t*>(c.bytes_of(*f));
-      rows.begin[k + 1] = rows.begin[k] + f->bytes(C::precision) / 4;
-    }
-    return rows;
   }
   template <class C>
   void copy_ghosts(C& c, const Fields& fields) {

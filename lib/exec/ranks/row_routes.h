@@ -136,6 +136,10 @@ class RowRoutes {
     return {me > 0 ? count + me - 1 : none, me + 1 < ranks ? count + me + 1 : none, count + ranks,
             me > 0 ? heads_[0] : none, me + 1 < ranks ? heads_[1] : none};
   }
+  static void leave_ghosts(Exec& exec, const SortedRows& rows) {
+    exec.items(RowRange{0, rows.own.first}, LeaveGhostsPass{rows.id});
+    exec.items(RowRange{rows.own.last, rows.all}, LeaveGhostsPass{rows.id});
+  }
   /// After exchange_counted(). False if a row found no room, or went to another rank than the
   /// adjacent ones: the sort lacks it.
   bool learn(const Counts& counts) {
@@ -183,8 +187,7 @@ class RowRoutes {
     for (int r = 0; r < lists.number; ++r)
       exec.items(going[std::size_t(r)], LeaveListedPass{lists.ranks, lists.list + r * lists.room,
                                                         lists.count + r, bin, rows.id});
-    exec.items(RowRange{0, rows.own.first}, LeaveGhostsPass{rows.id});
-    exec.items(RowRange{rows.own.last, rows.all}, LeaveGhostsPass{rows.id});
+    leave_ghosts(exec, rows);
   }
   static void reserve(Buffer<std::uint32_t>& buffer, std::size_t words) {
     if (buffer.size() < words) buffer.resize(words + words / 4);
