@@ -76,12 +76,6 @@ struct KnownBinPass {
   PBF_HD void operator()(int) const {}
 };
 
-/// For rows that already have their bin.
-struct KnownBinPass {
-  int* bin;
-  PBF_HD void operator()(int) const {}
-};
-
 /// The fields of rows in a message: all of a row, then those of the next.
 struct RowFields {
   static constexpr int most = 16;
