@@ -70,6 +70,13 @@ RankPlan plan_ranks(const Plan& plan, const Scene& s, int ranks) {
   return r;
 }
 
+Plan plan_of_rank(const Plan& whole, const Scene& of_rank) {
+  Plan plan = make_plan(of_rank, whole.particles, whole.start);
+  plan.capacity = of_rank.capacity;  // fewer than all particles
+  plan.memory = plan_memory_of_rank(of_rank, plan);
+  return plan;
+}
+
 std::string rank_text(const RankPlan& r) {
   std::string out = fmt::format(
       "ranks\n  {} slabs of the {} layers of cells across the longest edge\n", r.ranks, r.layers);

@@ -30,6 +30,9 @@ struct RankPlan {
 RankPlan plan_ranks(const Plan& plan, const Scene& scene, int ranks);
 /// plan_memory() of one of several ranks. plan: with the rows of the rank.
 MemoryPlan plan_memory_of_rank(const Scene& scene, const Plan& plan);
+/// The plan by which a rank makes its solver: of all particles, with memory for the rows of a rank.
+/// of_rank: the scene with them as its capacity.
+Plan plan_of_rank(const Plan& whole, const Scene& of_rank);
 std::string rank_text(const RankPlan& plan);
 Json rank_json(const RankPlan& plan);
 

@@ -45,7 +45,7 @@ RankedSolver::RankedSolver(Communicator& ranks, const Scene& scene, const Plan& 
       whole_scene_(scene),
       scene_(of_rank(scene, plan, ranks.size())),
       whole_plan_(plan),
-      plan_(make_plan(scene_, plan.particles, plan.start)),
+      plan_(plan_of_rank(plan, scene_)),
       frame_(ranks, plan.particles) {
   require_ranks(scene, plan, ranks.size());
   on_all([&] { local_ = make_solver(scene_, plan_, std::move(particles), &ranks_); });

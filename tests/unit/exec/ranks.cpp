@@ -115,6 +115,15 @@ TEST_CASE("the plan of ranks: one message per exchange, as counted by hand for 4
   CHECK(plan.bytes_per_ghost == 7 * 16 + 16 + 16 + 4 + 4);  // x, v, id, bin
 }
 
+TEST_CASE("a rank on a device has memory for its share of the particles, not for all") {
+  const RankScene m("configs/minimal", {"fluid.spacing=0.01", "backend=cuda"});
+  Scene of_rank = m.scene;
+  of_rank.capacity = plan_ranks(m.plan, m.scene, 4).capacity;
+  const Plan part = plan_of_rank(m.plan, of_rank);
+  CHECK(part.particles == m.plan.particles);
+  CHECK(double(part.memory.device_arrays) < 0.45 * double(m.plan.memory.device_arrays));
+}
+
 TEST_CASE("a scene with periodic axes is refused on several ranks by its key") {
   const RankScene m("configs/minimal", {"domain.periodic=[x]"});
   CHECK_THROWS_WITH(
