@@ -60,7 +60,9 @@ class CudaRows {
     if (!edges_) return exchange(out, in);
     edges_->exchange(launcher_, [&](cudaStream_t stream) { link_->exchange(out, in, stream); });
   }
-  bool has_edges() const { return edges_ != nullptr; }
+  /// Whether the rows at cuts of so many are launched by themselves in passes beside an exchange:
+  /// these must take longer than the additional launches.
+  bool has_edges(int rows) const { return edges_ && rows >= 200000; }
   /// Launches edges() for the rows at the cuts, and inner() for the others.
   template <class Edges, class Inner>
   void beside(const Edges& edges, const Inner& inner) {

@@ -246,8 +246,8 @@ class RankExec : public Base {
   /// Calls launch(range) for own rows: at once, or for those at the cuts beside the others.
   template <class Launch>
   void over(const RowRange& own, const Launch& launch) {
-    if constexpr (requires { this->has_edges(); })
-      if (rows_ && this->has_edges() && rows_->overlap()) {
+    if constexpr (requires { this->has_edges(0); })
+      if (rows_ && this->has_edges(own.last - own.first) && rows_->overlap()) {
         const auto [low, inner, high] = rows_->parts();
         const auto some = [&](const RowRange& r) {
           if (r.first < r.last) launch(r);

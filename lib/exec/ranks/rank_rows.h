@@ -116,7 +116,7 @@ class RankRows {
     for (const FieldInfo* f : pass.flips) c.flip(*f);  // named as they are after the flips
     if (!e.ghosts.empty() && !lost()) copy_ghosts(c, e.ghosts);
     for (const FieldInfo* f : pass.flips) c.flip(*f);
-    overlap_ = beside_exchange_.contains(&pass) && last_ - first_ >= kOverlapFrom;
+    overlap_ = beside_exchange_.contains(&pass);
     sorts_ = !e.rows.empty();
     if (sorts_) {
       if (++sorts_done_ % kBalanceEvery == 0) balance(c);
@@ -178,8 +178,6 @@ class RankRows {
  private:
   using Fields = Exchange::Fields;
   static constexpr int kBalanceEvery = 64;  ///< sorts
-  /// Own rows from which a pass beside an exchange takes longer than its additional launches.
-  static constexpr int kOverlapFrom = 200000;
 
   /// All ranks learn whether one of them has lost a row in the last sort. The host gets here while
   /// the device makes lists, so that nothing waits.
