@@ -70,6 +70,10 @@ RankPlan plan_ranks(const Plan& plan, const Scene& s, int ranks) {
   return r;
 }
 
+Scene scene_of_rank(const Plan& whole, Scene scene, int ranks) {
+  scene.capacity = plan_ranks(whole, scene, ranks).capacity;
+  return scene;
+}
 Plan plan_of_rank(const Plan& whole, const Scene& of_rank) {
   Plan plan = make_plan(of_rank, whole.particles, whole.start);
   plan.capacity = of_rank.capacity;  // fewer than all particles

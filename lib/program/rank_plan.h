@@ -30,8 +30,10 @@ struct RankPlan {
 RankPlan plan_ranks(const Plan& plan, const Scene& scene, int ranks);
 /// plan_memory() of one of several ranks. plan: with the rows of the rank.
 MemoryPlan plan_memory_of_rank(const Scene& scene, const Plan& plan);
-/// The plan by which a rank makes its solver: of all particles, with memory for the rows of a rank.
-/// of_rank: the scene with them as its capacity.
+/// The scene by which each of several ranks makes its solver. Its capacity is that of a rank, so
+/// that passes know the own rows as rows of a number that changes.
+Scene scene_of_rank(const Plan& whole, Scene scene, int ranks);
+/// The plan for it: of all particles, with memory for the rows of a rank.
 Plan plan_of_rank(const Plan& whole, const Scene& of_rank);
 std::string rank_text(const RankPlan& plan);
 Json rank_json(const RankPlan& plan);

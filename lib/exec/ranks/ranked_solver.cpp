@@ -14,12 +14,6 @@
 namespace pbf::exec_module {
 namespace {
 
-/// A rank's own rows are known to its passes as rows of a number that changes.
-Scene of_rank(Scene scene, const Plan& plan, int ranks) {
-  scene.capacity = plan_ranks(plan, scene, ranks).capacity;
-  return scene;
-}
-
 /// Why a scene cannot run on several ranks; null: it can.
 const char* why_one_rank(const Scene& s) {
   if (changes_rows(s)) return "the number of its particles changes";
@@ -43,7 +37,7 @@ RankedSolver::RankedSolver(Communicator& ranks, const Scene& scene, const Plan& 
                            Particles particles)
     : ranks_(ranks),
       whole_scene_(scene),
-      scene_(of_rank(scene, plan, ranks.size())),
+      scene_(scene_of_rank(plan, scene, ranks.size())),
       whole_plan_(plan),
       plan_(plan_of_rank(plan, scene_)),
       frame_(ranks, plan.particles) {

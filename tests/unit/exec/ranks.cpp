@@ -118,9 +118,7 @@ TEST_CASE("the plan of ranks: one message per exchange, as counted by hand for 4
 TEST_CASE("a rank on a device has memory for its share of the particles, not for all") {
   const RankScene m("configs/dam_break_2d", {"fluid.spacing=0.001", "domain.max=[1.6, 0.001, 1]",
                                              "bodies.0.max=[0.4, 0.001, 0.8]", "backend=cuda"});
-  Scene of_rank = m.scene;
-  of_rank.capacity = plan_ranks(m.plan, m.scene, 4).capacity;
-  const Plan part = plan_of_rank(m.plan, of_rank);
+  const Plan part = plan_of_rank(m.plan, scene_of_rank(m.plan, m.scene, 4));
   CHECK(part.particles == m.plan.particles);
   CHECK(double(part.memory.device_arrays) < 0.45 * double(m.plan.memory.device_arrays));
 }

@@ -48,9 +48,8 @@ Ran alone(const Made& m, int updates) {
 /// all: what each rank has seen.
 Ran watched(const Made& m, int ranks, int updates, std::vector<RankWatch>& all,
             const std::string& forget = "") {
-  Scene scene = m.scene;
-  scene.capacity = plan_ranks(m.plan, scene, ranks).capacity;
-  const Plan plan = make_plan(scene, m.plan.particles, m.plan.start);
+  const Scene scene = scene_of_rank(m.plan, m.scene, ranks);
+  const Plan plan = plan_of_rank(m.plan, scene);
   all.assign(std::size_t(ranks), {forget});
   std::mutex mutex;
   Ran ran;
