@@ -186,9 +186,10 @@ TEST_CASE("the peak memory of a run is that of one particle and the arrays of th
   }
 }
 #ifdef NDEBUG
-// The program and its libraries are part of the peak: 8 %, where they are those of another system
-// than the one that the forecast was measured on; there it is 5 % (tests/regression/lean_check).
-TEST_CASE("the memory that plan forecasts for a small run is the peak of the run, to 8 %") {
+// The program and its libraries are most of the peak, and how much of their code is resident depends
+// on the system: 12 %. What a setting adds to it does not. On the system that the forecast was
+// measured on, all of it agrees to 5 % (tests/regression/lean_check).
+TEST_CASE("plan forecasts the peak memory of a small run to 12 %, and what settings add, to 6 %") {
   const Scratch folder;
   folder.write("s.yaml",
                "domain: {min: [0, 0, 0], max: [2, 1, 1]}\n"
@@ -206,15 +207,19 @@ TEST_CASE("the memory that plan forecasts for a small run is the peak of the run
       "domain.loads=true",
       "checkpoint={}",
       "obstacles=[{name: step, shape: box, min: [1.2, 0.2, 0], max: [1.5, 0.8, 0.3]}]"};
+  double excess = 0;  // of the first run over its forecast, in MB
   for (const std::string& setting : settings) {
-    CAPTURE(setting);
+    CAPTURE(setting, excess);
     const Outcome plan =
         pbf::test::pbf({"plan", "s.yaml", "--json", "--set", setting}, folder.path());
     const Outcome run = pbf::test::pbf(
         {"run", "s.yaml", "--set", setting, "--out", "o", "--overwrite", "--quiet"}, folder.path());
     REQUIRE(run.code == 0);
-    CHECK(number_after(plan.out, "\"host_bytes\":") / 1e6 ==
-          Approx(mib_of_peak(run.out) * 1.048576).epsilon(0.08));
+    const double forecast = number_after(plan.out, "\"host_bytes\":") / 1e6;
+    const double measured = mib_of_peak(run.out) * 1.048576;
+    CHECK(forecast == Approx(measured).epsilon(0.12));
+    if (setting == settings.front()) excess = measured - forecast;
+    CHECK(forecast + excess == Approx(measured).epsilon(0.06));
   }
 }
 #endif
