@@ -186,9 +186,9 @@ TEST_CASE("the peak memory of a run is that of one particle and the arrays of th
   }
 }
 #ifdef NDEBUG
-// The program and its libraries are most of the peak, and how much of their code is resident depends
-// on the system: 12 %. What a setting adds to it does not. On the system that the forecast was
-// measured on, all of it agrees to 5 % (tests/regression/lean_check).
+// The program and its libraries are most of the peak, and how much of their code is resident
+// depends on the system: 12 %. What a setting adds to it does not. On the system that the forecast
+// was measured on, all of it agrees to 5 % (tests/regression/lean_check).
 TEST_CASE("plan forecasts the peak memory of a small run to 12 %, and what settings add, to 6 %") {
   const Scratch folder;
   folder.write("s.yaml",
