@@ -58,7 +58,8 @@ configure() {
   local cuda=$1 gpu=no why args=(-S . -B build)
   shift
   if [ ! -e build/CMakeCache.txt ]; then args+=(-G Ninja -DCMAKE_BUILD_TYPE=Release); fi
-  if nvidia-smi -L 2>/dev/null | grep -q '^GPU '; then gpu=yes; fi
+  # No pipe: grep -q stops at the first of several GPUs, and the broken pipe counts as a failure.
+  if [[ $(nvidia-smi -L 2>/dev/null) == *"GPU "* ]]; then gpu=yes; fi
   case $cuda$gpu in
     OFF*) why='as was asked' ;;
     AUTOno) cuda=OFF why='nvidia-smi lists no GPU; --cuda builds it all the same' ;;
