@@ -21,8 +21,7 @@ PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
   return c < cells ? c : 2 * cells - 1 - c;
 }
 
-/// x counts half cells, so the runs of candidates below are 2.5 cells long instead of 3. z counts
-/// from the first layer of this slab of the grid (Params::first_layer), and so do its bins.
+/// x counts half cells, so the runs of candidates below are 2.5 cells long instead of 3.
 struct GridCell {
   int x, y, z;
 };
@@ -31,7 +30,7 @@ template <int D, class Real>
 PBF_HD GridCell cell_of(Vec3<Real> x, const Params<Real>& p) {
   return {cell_coordinate(x.x + p.below.x, p.inv_cell + p.inv_cell, p.cells_x),
           D == 2 ? 0 : cell_coordinate(x.y + p.below.y, p.inv_cell, p.cells_y),
-          cell_coordinate(x.z + p.below.z, p.inv_cell, p.cells_z) - p.first_layer};
+          cell_coordinate(x.z + p.below.z, p.inv_cell, p.cells_z)};
 }
 
 /// Bins of a half cell: the quarters of its y-z face, in two dimensions the halves of its z edge.
@@ -54,8 +53,15 @@ PBF_HD int bin_of(Vec3<Real> x, const Params<Real>& p) {
 
 template <class Real>
 PBF_HD int bin_count(const Params<Real>& p) {
-  return p.cells_x * p.cells_y * p.layers * bins_per_cell(p.dimensions);
+  return p.cells_x * p.cells_y * p.cells_z * bins_per_cell(p.dimensions);
 }
+
+/// Bins begin ... end - 1.
+struct BinRange {
+  int begin = 0, end = 0;
+  PBF_HD bool has(int bin) const { return unsigned(bin - begin) < unsigned(end - begin); }
+  bool operator==(const BinRange&) const = default;
+};
 
 /// Calls f(begin, end) for up to nine runs of particles (three in two dimensions) that contain
 /// every particle within one cell edge of a particle in the cells (x_low..x_high, y, z). A run is a
@@ -68,7 +74,7 @@ PBF_HD void for_each_run(int x_low, int x_high, int y, int z, const int* bin_sta
   const int x1 = x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;
   const int y0 = D == 3 && y > 0 ? y - 1 : 0;
   const int y1 = D == 2 ? 0 : y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;
-  const int z0 = z > 0 ? z - 1 : 0, z1 = z + 1 < p.layers ? z + 1 : p.layers - 1;
+  const int z0 = z > 0 ? z - 1 : 0, z1 = z + 1 < p.cells_z ? z + 1 : p.cells_z - 1;
   for (int k = z0; k <= z1; ++k)
     for (int j = y0; j <= y1; ++j) {
       const int row = (D == 2 ? k : k * p.cells_y + j) * p.cells_x;

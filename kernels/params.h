@@ -27,7 +27,6 @@ struct Params {
   Vec3<Real> period;  ///< h, length of the domain along periodic axes, 0 along others
   Vec3<Real> below;   ///< h, where the grid begins below 0: a cell for images, 0 along other axes
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
-  int first_layer = 0, layers = 1;            ///< layers of cells along z that have bins here
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)

@@ -70,12 +70,6 @@ struct ListRowsPass {
   PBF_HD void operator()(int i) const { to.add(i, bin[i]); }
 };
 
-/// For rows that already have their bin.
-struct KnownBinPass {
-  int* bin;
-  PBF_HD void operator()(int) const {}
-};
-
 /// The fields of rows in a message: all of a row, then those of the next.
 struct RowFields {
   static constexpr int most = 16;
@@ -124,35 +118,23 @@ struct PackCountedPass {
     if (k < *count * rows.fields.words()) rows(k);
   }
 };
-/// The same for what has arrived. Room that is left over becomes rows that leave in the next sort.
+/// The same for what has arrived. Room that is left over becomes rows without a bin.
 struct UnpackCountedPass {
   UnpackRowsPass rows;
-  int* id;
+  int* bin;
   PBF_HD void operator()(int k) const {
     const int words = rows.fields.words();
     if (k < int(rows.from[-kHeadWords]) * words)
       rows(k);
     else if (k % words == 0)
-      id[rows.first + k / words] = -1;
+      bin[rows.first + k / words] = -1;
   }
 };
 
-/// Rows that do not belong here from the next sort on get a negative id: of the listed ones, those
-/// that leave. A row may be in several lists.
-struct LeaveListedPass {
-  LayerRanks ranks;
-  const int *list, *count, *bin;
-  int* id;
-  PBF_HD void operator()(int k) const {
-    if (k >= *count) return;
-    const int i = list[k];
-    if (id[i] >= 0 && !ranks(bin[i]).has(ranks.me)) id[i] = -1 - id[i];
-  }
-};
-/// The rows of other ranks.
-struct LeaveGhostsPass {
-  int* id;
-  PBF_HD void operator()(int i) const { id[i] = -1 - id[i]; }
+/// Rows that the next sort leaves out.
+struct WithoutBinPass {
+  int* bin;
+  PBF_HD void operator()(int i) const { bin[i] = -1; }
 };
 
 /// A gather of a sort that counts what the prediction of own rows counts, and nothing of ghosts.

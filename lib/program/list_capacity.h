@@ -14,6 +14,13 @@ struct ListCapacity {
   constexpr int longest() const { return 4 * (first + overflow); }
 };
 
+/// What lists on the device lacked.
+struct ListDemand {
+  std::int64_t overflows = 0;  ///< blocks; 0: there were enough
+  std::int64_t longest = 0;    ///< entries of the longest list; 0: all were short enough
+  constexpr bool any() const { return overflows > 0 || longest > 0; }
+};
+
 /// Initial capacity: every list has 1.15 times the entries of fluid at rest (`rest_neighbors`), or
 /// `first_entries` if that is above 0. One list in eight may have up to 32 more.
 inline ListCapacity first_list_capacity(double rest_neighbors, std::int64_t n,

@@ -78,10 +78,11 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
                    std::int64_t(1.25 * double(std::min<std::int64_t>(n, 1024)) * start.most)));
 }
 
-void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
+void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, bool rank,
+                    const Adder& add) {
   const std::int64_t n = plan.capacity;
   const ListCapacity capacity = list_capacity(s, plan);
-  if (n > kSortParticles || bins > kSortBins) {
+  if (rank || n > kSortParticles || bins > kSortBins) {
     add("particles of each bin", "int32", 1, bins + 1);
     add("scratch of the scan", "byte", 1, bins / 240 + 1024);  // CUB: 16 bytes a tile
   }

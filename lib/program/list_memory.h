@@ -28,6 +28,8 @@ struct Adder {
 };
 
 void add_cpu_lists(const Scene& scene, const Plan& plan, const Adder& add);
-void add_cuda_lists(const Scene& scene, const Plan& plan, std::int64_t bins, const Adder& add);
+/// rank: of one of several.
+void add_cuda_lists(const Scene& scene, const Plan& plan, std::int64_t bins, bool rank,
+                    const Adder& add);
 
 }  // namespace pbf::program_module

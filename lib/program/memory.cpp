@@ -243,7 +243,7 @@ MemoryPlan memory_of(const Scene& s, const Plan& plan, bool rank) {
   const Adder solver{memory, about(s.backend).on_device, Held::solver};
   add_fields(s, plan, bins, solver);
   if (solver.on_device)
-    add_cuda_lists(s, plan, bins, solver);
+    add_cuda_lists(s, plan, bins, rank, solver);
   else
     add_cpu_lists(s, plan, solver);
   std::int64_t stays = 0;

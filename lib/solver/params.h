@@ -52,7 +52,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   b.inv_range = Real(1 / plan.wall_range);
   p.cells_x = plan.cells[0];
   p.cells_y = plan.cells[1];
-  p.cells_z = p.layers = plan.cells[2];
+  p.cells_z = plan.cells[2];
   p.inv_cell = Real(1 / plan.cell_edge);
   const auto if_periodic = [&](int axis, Real value) {
     return s.domain.is_periodic(axis) ? value : Real(0);

@@ -23,14 +23,14 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
   p.dimensions = D;
   p.cells_x = 2 * nx;
   p.cells_y = ny;
-  p.cells_z = p.layers = nz;
+  p.cells_z = nz;
   CpuExec exec(threads, 37, simd);
   std::vector<int> cell(x.size()), id(x.size()), order(x.size()),
       start(std::size_t(bin_count(p)) + 1);
   for (int i = 0; i < n; ++i) cell[std::size_t(i)] = bin_of<D>(xyz(x[std::size_t(i)]), p);
   std::iota(id.begin(), id.end(), 0);
   std::shuffle(id.begin(), id.end(), std::mt19937(5));
-  exec.sort(cell.data(), id.data(), n, bin_count(p), order.data(), start.data());
+  exec.sort(cell.data(), id.data(), n, {0, bin_count(p)}, order.data(), start.data());
 
   std::vector<Vec4<Real>> sorted(x.size());
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -128,7 +128,7 @@ TEMPLATE_TEST_CASE("neighbor lists hold exactly the pairs closer than h", "[slow
 
 TEST_CASE("particles that have left the grid are spread over it, not piled up at its rim") {
   Params<double> p;
-  p.cells_x = 8, p.cells_y = p.cells_z = p.layers = 4;
+  p.cells_x = 8, p.cells_y = p.cells_z = 4;
   std::vector<int> count(std::size_t(bin_count(p)));
   const int n = 100000;
   for (const auto& x : random_points<double>(n, -1000, 1000))
@@ -156,7 +156,7 @@ TEST_CASE("more than 16384 particles are sorted by bin and id, by 1, 2 and 5 thr
   for (int threads : {1, 2, 5}) {
     CpuExec exec(threads);
     std::vector<int> order(n);
-    exec.sort(cell.data(), id.data(), n, cells, order.data(), start.data());
+    exec.sort(cell.data(), id.data(), n, {0, cells}, order.data(), start.data());
     CHECK(order == expected);
     CHECK(start[cells] == n);
   }
@@ -183,7 +183,7 @@ TEMPLATE_TEST_CASE("in two dimensions too, from 9 cells", "", float, double) {
     Params<R> p;
     p.dimensions = 2;
     p.cells_x = 6;
-    p.cells_z = p.layers = 2;
+    p.cells_z = 2;
     CHECK(bin_count(p) == 6 * 2 * 2);
     CHECK(bin_of<2>(Vec3<R>{R(0.1), 0, R(0.1)}, p) == 0);
     CHECK(bin_of<2>(Vec3<R>{R(0.1), 0, R(0.6)}, p) == 1);
@@ -201,46 +201,47 @@ struct Sorted {
   std::vector<Vec4<Real>> x;
   std::vector<std::vector<int>> lists;  ///< ids
 
-  Sorted(const Params<Real>& p, const std::vector<Vec4<Real>>& all, const std::vector<int>& ids)
+  /// Those with bins in `range`; lists are for those with bins in `listed`.
+  Sorted(const Params<Real>& p, const std::vector<Vec4<Real>>& all, const BinRange& range,
+         const BinRange& listed)
       : start(std::size_t(bin_count(p)) + 1) {
-    std::vector<int> bin, order(ids.size());
-    for (const int i : ids) bin.push_back(bin_of<D>(xyz(all[std::size_t(i)]), p));
+    std::vector<int> bin, order(all.size()), ids(all.size());
+    std::iota(ids.begin(), ids.end(), 0);
+    for (const auto& at : all) bin.push_back(bin_of<D>(xyz(at), p));
     for (const int b : bin) REQUIRE((b >= 0 && b < bin_count(p)));
-    const int n = int(ids.size());
     CpuExec exec(2);
-    exec.sort(bin.data(), ids.data(), n, bin_count(p), order.data(), start.data());
+    exec.sort(bin.data(), ids.data(), int(ids.size()), range, order.data(), start.data());
+    const int n = start[std::size_t(range.end)];
+    order.resize(std::size_t(n));
     for (const int k : order) {
-      id.push_back(ids[std::size_t(k)]);
+      id.push_back(k);
       x.push_back(all[std::size_t(id.back())]);
     }
-    const auto made = exec.build_lists(n, n, x.data(), start.data(), p);
-    lists.resize(ids.size());
-    for (int i = 0; i < n; ++i)
+    const RowRange rows{start[std::size_t(listed.begin)], start[std::size_t(listed.end)]};
+    const auto made = exec.build_lists(rows, n, x.data(), start.data(), p);
+    lists.resize(id.size());
+    for (int i = rows.first; i < rows.last; ++i)
       made.for_each(i,
                     [&](Neighbor j) { lists[std::size_t(i)].push_back(id[std::size_t(j.row)]); });
   }
 };
 
-/// Layers first..last-1 with one more on either side, against the whole grid: the same particles in
-/// the same order, and the same lists of those between.
+/// The bins of the layers first..last-1 with one more on either side, against the whole grid: the
+/// same particles in the same order, and the same lists of those between.
 template <int D, class Real>
-void check_slab(const std::vector<Vec4<Real>>& x, Params<Real> p, int first, int last) {
-  const auto layer = [&, whole = p](const Vec4<Real>& at) { return cell_of<D>(xyz(at), whole).z; };
-  std::vector<int> all, here;
+void check_slab(const std::vector<Vec4<Real>>& x, const Params<Real>& p, int first, int last) {
+  const auto layer = [&](const Vec4<Real>& at) { return cell_of<D>(xyz(at), p).z; };
   const int low = std::max(first - 1, 0), high = std::min(last + 1, p.cells_z);
-  for (int i = 0; i < int(x.size()); ++i) {
-    all.push_back(i);
-    const int z = layer(x[std::size_t(i)]);
-    if (z >= low && z < high) here.push_back(i);
-  }
-  const Sorted<D, Real> whole(p, x, all);
-  p.first_layer = low;
-  p.layers = high - low;
-  const Sorted<D, Real> slab(p, x, here);
-  const auto begin =
-      std::size_t(whole.start[std::size_t(low * p.cells_x * p.cells_y * bins_per_cell(D))]);
+  const auto here = std::ranges::count_if(
+      x, [&](const auto& at) { return layer(at) >= low && layer(at) < high; });
+  const int of_layer = p.cells_x * p.cells_y * bins_per_cell(D);
+  const BinRange between{first * of_layer, last * of_layer};
+  const Sorted<D, Real> whole(p, x, {0, bin_count(p)}, between),
+      slab(p, x, {low * of_layer, high * of_layer}, between);
+  REQUIRE(slab.id.size() == std::size_t(here));
+  const auto begin = std::size_t(whole.start[std::size_t(low * of_layer)]);
   std::size_t compared = 0;
-  for (std::size_t k = 0; k < here.size(); ++k) {
+  for (std::size_t k = 0; k < slab.id.size(); ++k) {
     REQUIRE(slab.id[k] == whole.id[begin + k]);
     const int z = layer(slab.x[k]);
     if (z < first || z >= last) continue;
@@ -258,7 +259,7 @@ TEMPLATE_TEST_CASE("a slab of the grid has the rows and the lists of the whole",
   Params<R> p;
   p.cells_x = 10;
   p.cells_y = 4;
-  p.cells_z = p.layers = 9;
+  p.cells_z = 9;
   // Some have left the grid through each face, many times its size away.
   std::vector<Vec4<R>> x = random_points<R>(3000, -1, 10);
   for (auto far : random_points<R>(500, -60, 60)) x.push_back(far);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,22 @@ class EdgeCpu : public CpuExec {
     CpuExec::listed(count, most, pass);
   }
 
+  /// The sort of a device.
+  void begin_sort(const BinSort& s) { counts_.resize(std::size_t(s.all) + 1); }
+  template <class Pass>
+  CountPass<true, Pass> counting(const BinSort& s, const Pass& pass) {
+    return {pass, s.bins, counts_.data(), s.order, s.id};
+  }
+  template <class Gather>
+  void sort_counted(const BinSort& s, const int* bin, int n, const Gather& gather) {
+    const auto begin = counts_.begin() + s.bins.begin, end = counts_.begin() + s.bins.end;
+    std::exclusive_scan(begin, end + 1, s.start + s.bins.begin, 0);
+    std::fill(begin, end, 0);
+    slot_.resize(std::size_t(n));
+    CpuExec::items(n, PlacePass{s.bins, bin, s.start, s.order, slot_.data()});
+    CpuExec::items(n, OrderPass<true, Gather>{s.bins, bin, s.id, s.start, slot_.data(), gather});
+  }
+
   void exchange_edges(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
     CpuExec::exchange_edges(out, in);
     arriving_ = in;
@@ -73,6 +90,9 @@ class EdgeCpu : public CpuExec {
   using Range = std::pair<int, int>;
   std::vector<Range> launched_{};     ///< over rows, in this pass
   std::vector<Incoming> arriving_{};  ///< for this pass
+
+ private:
+  std::vector<int> counts_{}, slot_{};
 };
 
 class WatchedExec : public PeriodicExec<RankExec<EdgeCpu>> {

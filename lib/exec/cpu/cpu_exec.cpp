@@ -29,16 +29,17 @@ void sort_within_bins(const int* bin, const int* id, int first, int last, int* o
 
 }  // namespace
 
-void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, int* start) {
+void CpuExec::sort(const int* bin, const int* id, int n, const BinRange& bins, int* order,
+                   int* start) {
   // Every thread counts and places the particles of its own range of bins, in order; only `start`
   // is needed as memory. Particles are nearly in the order of the last sort, so the bins at equal
   // distances among them divide the work about equally. At most 4 threads, since each looks at
   // every particle; the sort is a small part of an update.
   const int threads = n > 16384 ? std::min(threads_, 4) : 1;
-  int low[5] = {0}, placed[4] = {0};
+  int low[5] = {bins.begin}, placed[4] = {0};
   for (int t = 1; t < threads; ++t)
-    low[t] = std::max(low[t - 1], bin[std::int64_t(n) * t / threads]);
-  low[threads] = bins;
+    low[t] = std::clamp(bin[std::int64_t(n) * t / threads], low[t - 1], bins.end);
+  low[threads] = bins.end;
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
   for (int t = 0; t < threads; ++t) {
     std::fill(start + low[t], start + low[t + 1], 0);
@@ -61,7 +62,7 @@ void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, i
     std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
     start[low[t]] = first;
   }
-  start[bins] = std::accumulate(placed, placed + threads, 0);
+  start[bins.end] = std::accumulate(placed, placed + threads, 0);
 }
 
 void CpuExec::rank(int n, const int* id, int* place) {

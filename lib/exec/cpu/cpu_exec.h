@@ -13,12 +13,14 @@
 #include "kernels/measure.h"
 #include "kernels/neighbors.h"
 #include "kernels/pass_residual.h"
+#include "kernels/pass_sort.h"
 #include "lib/base/stage_clock.h"
 #include "lib/exec/cpu/cpu_rows.h"
 #include "lib/exec/cpu/cpu_threads.h"
 #include "lib/exec/cpu/host_buffer.h"
 #include "lib/exec/cpu/lane_sums.h"
 #include "lib/exec/cpu/list_maker.h"
+#include "lib/program/list_capacity.h"
 #include "lib/program/memory.h"
 #include "lib/solver/executor.h"
 
@@ -62,7 +64,8 @@ class CpuExec : public CpuRows, protected CpuThreads {
   }
   void forget_recorded() {}
   int largest_batch(int) const { return 1 << 30; }
-  bool grow_lists(int) { return false; }
+  static ListDemand list_demand() { return {}; }
+  bool grow_lists(int, std::int64_t = 0) { return false; }
 
   /// Copies n elements to an array of this executor.
   template <class T>
@@ -184,10 +187,10 @@ class CpuExec : public CpuRows, protected CpuThreads {
   /// by bin and, within a bin, by id (start[b] = first place of bin b, start[bins] = n); calls
   /// gather(from, to) for every particle. The order of rows therefore follows from the positions
   /// alone. Marks `stage` after `first`. leave: rows with a negative id leave; n is the number of
-  /// all rows, start[bins] that of the others.
+  /// all rows, start[bins] that of the others. Returns where that is.
   template <bool leave, class First, class Listed, class Gather>
-  void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
-                   const int* id, int* order, int* start, const Gather& gather) {
+  const int* sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
+                         const int* id, int* order, int* start, const Gather& gather) {
     if constexpr (PairPass<First>)
       pairs(n, first);
     else
@@ -198,12 +201,24 @@ class CpuExec : public CpuRows, protected CpuThreads {
     mark(stage);
     if constexpr (leave)
       for (int i = 0; i < n; ++i)
-        if (id[i] < 0) first.bin[i] = bins;
-    sort(first.bin, id, n, bins, order, start);
-    items(leave ? start[bins] : n, [&](int k) { gather(order[k], k); });
+        if (id[i] < 0) first.bin[i] = -1;
+    sort_counted({{0, bins}, bins, id, order, start}, first.bin, n, gather);
+    return start + bins;
   }
-  /// order[k] = row of the k-th particle by (bin, id). Leaves out rows of bin `bins`.
-  void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
+  // The same in parts, for rows that come from other ranks between: begin_sort(), then passes that
+  // give rows their bins, each as counting(sort, pass), and sort_counted() for n rows.
+  void begin_sort(const BinSort&) {}
+  template <class Pass>
+  Pass counting(const BinSort&, const Pass& pass) {
+    return pass;
+  }
+  template <class Gather>
+  void sort_counted(const BinSort& s, const int* bin, int n, const Gather& gather) {
+    sort(bin, s.id, n, s.bins, s.order, s.start);
+    items(s.start[s.bins.end], [&](int k) { gather(s.order[k], k); });
+  }
+  /// order[k] = row of the k-th particle by (bin, id). Leaves out rows of other bins.
+  void sort(const int* bin, const int* id, int n, const BinRange& bins, int* order, int* start);
 
   /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
   /// std::bad_alloc). far: the row that pads lists.
@@ -254,33 +269,9 @@ class CpuExec : public CpuRows, protected CpuThreads {
   std::size_t bytes() const;
 
  protected:
-  /// See LevelBrickPass.
-  template <class Pass>
-  static void of_brick(const Pass& pass, int n) {
-    const auto brick = pass.brick(n);
-    std::int64_t found[Pass::brick_cells];
-    for (int k = 0; k < Pass::brick_cells; ++k) {
-      const auto c = pass.cell(brick, k);
-      found[k] = pass.grid.has(c) ? pass.finish(c, pass.part(c, 0, 1)) : 0;
-    }
-    for (int which = 0; which < Pass::brick_corners; ++which) {
-      auto sum = pass.share(which, 0, found[0]);
-      for (int k = 1; k < Pass::brick_cells; ++k)
-        if (found[k] != 0) sum += pass.share(which, k, found[k]);
-      pass.finish_corner(brick, which, sum);
-    }
-  }
-
-  template <class Pass>
-  void wholes(int n, const Pass& pass) {
-    in_pieces<kShare>(n, [&](int first, int last) {
-      for (int i = first; i < last; ++i) pass.finish(i, pass.part(i, 0, 1));
-    });
-  }
   Simd simd() const { return simd_; }
 
  private:
-  static constexpr int kShare = 16;  ///< work of an item that threads may share, in particles
   int list_entries_;
   Simd simd_;
   StageClock clock_;

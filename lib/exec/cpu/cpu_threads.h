@@ -37,6 +37,30 @@ class CpuThreads {
       f(first, end);
     }
   }
+  /// See LevelBrickPass.
+  template <class Pass>
+  static void of_brick(const Pass& pass, int n) {
+    const auto brick = pass.brick(n);
+    std::int64_t found[Pass::brick_cells];
+    for (int k = 0; k < Pass::brick_cells; ++k) {
+      const auto c = pass.cell(brick, k);
+      found[k] = pass.grid.has(c) ? pass.finish(c, pass.part(c, 0, 1)) : 0;
+    }
+    for (int which = 0; which < Pass::brick_corners; ++which) {
+      auto sum = pass.share(which, 0, found[0]);
+      for (int k = 1; k < Pass::brick_cells; ++k)
+        if (found[k] != 0) sum += pass.share(which, k, found[k]);
+      pass.finish_corner(brick, which, sum);
+    }
+  }
+
+  template <class Pass>
+  void wholes(int n, const Pass& pass) {
+    in_pieces<kShare>(n, [&](int first, int last) {
+      for (int i = first; i < last; ++i) pass.finish(i, pass.part(i, 0, 1));
+    });
+  }
+
   /// The sum of term(i), which does not depend on the order of terms.
   template <class Sum, class Term>
   Sum sum(int n, const Term& term) {
@@ -77,6 +101,7 @@ class CpuThreads {
     return sum;
   }
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
+  static constexpr int kShare = 16;   ///< work of an item that threads may share, in particles
   static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
   int threads_;
   std::vector<std::int64_t> in_bins_{};

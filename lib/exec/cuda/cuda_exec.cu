@@ -32,11 +32,18 @@ void DeviceLists::ask_state(cudaStream_t stream) {
                                  cudaMemcpyDeviceToHost, stream));
 }
 
-bool DeviceLists::grow(int n, cudaStream_t stream) {
-  const ListState& short_of = *state_host_.data();
-  if (short_of.wanted == 0 && short_of.longest == 0) return false;
-  capacity_ = larger_list_capacity(capacity_, std::max(short_of.used, short_of.wanted),
-                                   short_of.longest, n);
+ListDemand DeviceLists::demand() const {
+  const ListState& s = *state_host_.data();
+  return {s.wanted > 0 ? std::max(s.used, s.wanted) : 0, s.longest};
+}
+
+bool DeviceLists::grow(int n, std::int64_t overflows_elsewhere, cudaStream_t stream) {
+  const ListDemand lacked = demand();
+  if (!lacked.any() && overflows_elsewhere <= capacity_.overflows) return false;
+  capacity_ = larger_list_capacity(
+      capacity_,
+      std::max<std::int64_t>({state_host_.data()->used, lacked.overflows, overflows_elsewhere}),
+      int(lacked.longest), n);
   words_.resize(0);  // first, because old and new lists may not fit together
   overflows_.resize(0);
   allocate(n);
@@ -93,11 +100,11 @@ void CudaExec::book(double scale) {
   stages_.clear();
 }
 
-void CudaExec::scan(int n, int* start) {
-  // The count behind the last bin is 0, so the scan ends with the number of particles.
+void CountingSort::scan(const BinRange& bins, int* start, cudaStream_t stream) {
+  // The count behind the last bin is 0, so the scan ends with the number of rows.
   with_scratch(scan_, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data(), start, n,
-                                         launcher_.ready());
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data() + bins.begin,
+                                         start + bins.begin, bins.end - bins.begin + 1, stream);
   });
 }
 
@@ -188,10 +195,14 @@ bool CudaExec::asked_to_repeat() {
   return go != 0;
 }
 
-bool CudaExec::grow_lists(int n) {
+ListDemand CudaExec::list_demand() {
   lists_.ask_state(launcher_.ready());
   synchronize();
-  const bool grown = lists_.grow(n, launcher_.ready());
+  return lists_.demand();
+}
+
+bool CudaExec::grow_lists(int n, std::int64_t overflows_elsewhere) {
+  const bool grown = lists_.grow(n, overflows_elsewhere, launcher_.ready());
   if (grown) forget_recorded();  // it holds the old addresses
   return grown;
 }

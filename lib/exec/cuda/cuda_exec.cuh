@@ -3,11 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cub/device/device_scan.cuh>
 #include <string>
 #include <vector>
 
 #include "lib/base/stage_clock.h"
+#include "lib/exec/cuda/counting_sort.cuh"
 #include "lib/exec/cuda/cuda_sums.cuh"
 #include "lib/exec/cuda/device_lists.cuh"
 #include "lib/exec/cuda/host_copy.cuh"
@@ -15,7 +15,6 @@
 #include "lib/exec/cuda/recorded.cuh"
 #include "lib/exec/cuda/repeat.cuh"
 #include "lib/exec/cuda/shared_pass.cuh"
-#include "lib/exec/cuda/sort_kernels.cuh"
 #include "lib/exec/cuda/timed_updates.cuh"
 #include "lib/solver/executor.h"
 
@@ -73,7 +72,13 @@ class CudaExec : public CudaSums {
   }
   void forget_recorded() { recorded_.drop(); }
   int largest_batch(int n) const { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
-  bool grow_lists(int n);
+  bool grow_lists(int n) {
+    list_demand();
+    return grow_lists(n, 0);
+  }
+  // The same in parts, of which the first waits for the device: see DeviceLists.
+  ListDemand list_demand();
+  bool grow_lists(int n, std::int64_t overflows_elsewhere);
 
   CountedRows counted(const RowState* state, int most) const { return {state, most}; }
   static int rows_now(const RowState&) {
@@ -153,17 +158,14 @@ class CudaExec : public CudaSums {
 
   /// See CpuExec; `order` holds the order of arrival within bins.
   template <bool leave, class Rows, class First, class Listed, class Gather>
-  void sort_by_bin(const char* stage, const First& first, const Listed& near, const Rows& n,
-                   int bins, const int* id, int* order, int* start, const Gather& gather) {
+  const int* sort_by_bin(const char* stage, const First& first, const Listed& near, const Rows& n,
+                         int bins, const int* id, int* order, int* start, const Gather& gather) {
     constexpr bool leaves_rows = requires { near.pass; };
+    const BinSort sort{{0, bins}, bins, id, order, start};
     const auto all = int(rows_);
-    slot_.resize(std::size_t(all));
-    const OrderPass<leave, Gather> in_order{first.bin, id, start, slot_.data(), bins, gather};
     if (all <= kSortParticles && bins <= kSortBins) {
-      const auto sort = [&](const auto& before) {
-        launch(small_sort_kernel<leave, Rows, std::decay_t<decltype(before)>, Gather>, kSortThreads,
-               kSortThreads, std::size_t(bins + leave) * sizeof(int), n, before, bins, order,
-               slot_.data(), start, lists_.state(), in_order);
+      const auto small = [&](const auto& before) {
+        sort_.small<leave>(launcher_, sort, rows_, n, before, lists_.state(), gather);
       };
       if constexpr (leaves_rows || PairPass<First>) {
         items_or_pairs(n, first);
@@ -171,27 +173,30 @@ class CudaExec : public CudaSums {
           if (near.count) listed(near.count, all, near.pass);
         }
         mark(stage);
-        sort(NothingFirst{});
+        small(KnownBinPass{first.bin});
       } else {
-        sort(first);
+        small(first);
       }
-      return;
+      return start + bins;
     }
-    if (counts_.size() != std::size_t(bins) + 1) {
-      counts_.resize(std::size_t(bins) + 1);
-      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), launcher_.ready()));
-    }
-    items_or_pairs(n, CountPass<leave, First>{first, counts_.data(), order, id, bins});
+    begin_sort(sort);
+    items_or_pairs(n, counting<leave>(sort, first));
     if constexpr (leaves_rows) {
-      using Near = CountPass<leave, std::decay_t<decltype(near.pass)>>;
-      if (near.count) listed(near.count, all, Near{near.pass, counts_.data(), order, id, bins});
+      if (near.count) listed(near.count, all, counting<leave>(sort, near.pass));
     }
     mark(stage);
-    scan(bins + 1, start);
-    launch(
-        place_kernel<Rows>, most(n), kBlock, 0, n,
-        PlacePass{first.bin, start, order, slot_.data(), counts_.data(), lists_.state(), bins + 1});
-    items(n, in_order);
+    sort_counted<leave>(sort, first.bin, n, gather);
+    return start + bins;
+  }
+  void begin_sort(const BinSort& s) { sort_.begin(s, rows_, launcher_.ready()); }
+  template <bool leave = true, class Pass>
+  CountPass<leave, Pass> counting(const BinSort& s, const Pass& pass) {
+    return sort_.counting<leave>(s, pass);
+  }
+  template <bool leave = true, class Rows, class Gather>
+  void sort_counted(const BinSort& s, const int* bin, const Rows& n, const Gather& gather) {
+    sort_.place(launcher_, s, bin, n, lists_.state());
+    items(n, sort_.in_order<leave>(s, bin, gather));
   }
 
   template <class Rows, class Real>
@@ -220,8 +225,7 @@ class CudaExec : public CudaSums {
   }
 
   std::size_t bytes() const {
-    return lists_.bytes() + counts_.bytes() + slot_.bytes() + scan_.bytes() + repeat_.bytes() +
-           copy_.bytes() + CudaSums::bytes();
+    return lists_.bytes() + sort_.bytes() + repeat_.bytes() + copy_.bytes() + CudaSums::bytes();
   }
 
  private:
@@ -273,8 +277,6 @@ class CudaExec : public CudaSums {
   void begin_repeated(cudaGraphConditionalHandle handle);
   void end_repeated();
   bool asked_to_repeat();
-  /// Exclusive sums of the counts.
-  void scan(int n, int* start);
 
   std::string device_, driver_;          ///< names
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
@@ -288,8 +290,7 @@ class CudaExec : public CudaSums {
   int samples_ = 0, stage_samples_ = 0;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
-  DeviceBuffer<int> counts_, slot_;
-  DeviceBuffer<char> scan_;  ///< separate, because recorded updates hold its address
+  CountingSort sort_;
   DeviceBuffer<RepeatState> repeat_;
 };
 

@@ -27,11 +27,13 @@ class DeviceLists {
     return {words_.data(),    overflows_.data(), count_.data(),      overflow_of_.data(),
             list_stride(far), capacity_.first,   capacity_.overflow, far};
   }
-  /// To be called before grow(), which needs the stream to be done.
+  /// To be called before the next two, which need the stream to be done.
   void ask_state(cudaStream_t stream);
-  /// Whether lists of at most n particles had too little memory since the last call; they then have
-  /// more.
-  bool grow(int n, cudaStream_t stream);
+  /// Since the memory last grew.
+  ListDemand demand() const;
+  /// Whether lists of at most n particles had too little memory, or would have if they needed as
+  /// many overflows as those of another rank; they then have more.
+  bool grow(int n, std::int64_t overflows_elsewhere, cudaStream_t stream);
   void clear_state(cudaStream_t stream) {
     PBF_CUDA_CHECK(cudaMemsetAsync(state_.data(), 0, sizeof(ListState), stream));
   }

@@ -125,7 +125,7 @@ struct ListPass {
   };
   __device__ __forceinline__ Row row_of(GridCell c, int r) const {
     const int y = D == 2 ? 0 : c.y + r % 3 - 1, z = c.z + (D == 2 ? r : r / 3) - 1;
-    if (r >= rows || y < 0 || z < 0 || y >= p.cells_y || z >= p.layers) return {};
+    if (r >= rows || y < 0 || z < 0 || y >= p.cells_y || z >= p.cells_z) return {};
     const int row = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;
     return {bin_start[(row + max(c.x - 2, 0)) * bins_per_cell(D)],
             bin_start[(row + min(c.x + 2, p.cells_x - 1) + 1) * bins_per_cell(D)]};

@@ -143,19 +143,18 @@ class RankExec : public Base {
                      body);
   }
   template <bool leave, class First, class Near, class Gather>
-  void sort_by_bin(const char* stage, const First& of, const Near& near, int n, int bins,
-                   const int* id, int* order, int* start, const Gather& gather) {
-    Base::template sort_by_bin<leave>(stage, of, near, n, bins, id, order, start, gather);
+  const int* sort_by_bin(const char* stage, const First& of, const Near& near, int n, int bins,
+                         const int* id, int* order, int* start, const Gather& gather) {
+    return Base::template sort_by_bin<leave>(stage, of, near, n, bins, id, order, start, gather);
   }
   template <bool leave, class First, class Near, class Gather>
-  void sort_by_bin(const char* stage, const First& of, const Near& near, const Rows& rows, int bins,
-                   const int* id, int* order, int* start, const Gather& gather) {
-    if (rows_)
-      sort_on_ranks(stage, of, near, rows, bins, id, order, start, gather);
-    else if (rows.counted)
-      Base::template sort_by_bin<leave>(stage, of, near, rows.all, bins, id, order, start, gather);
-    else
-      Base::template sort_by_bin<false>(stage, of, near, rows.all, bins, id, order, start, gather);
+  const int* sort_by_bin(const char* stage, const First& of, const Near& near, const Rows& rows,
+                         int bins, const int* id, int* order, int* start, const Gather& gather) {
+    const int n = rows.all;
+    if (rows_) return sort_on_ranks(stage, of, near, rows, bins, id, order, start, gather);
+    if (rows.counted)
+      return Base::template sort_by_bin<leave>(stage, of, near, n, bins, id, order, start, gather);
+    return Base::template sort_by_bin<false>(stage, of, near, n, bins, id, order, start, gather);
   }
   using Base::build_lists;
   template <class Real>
@@ -164,13 +163,16 @@ class RankExec : public Base {
     return Base::build_lists(RowRange(rows), far, position, bin_start, p);
   }
   /// If lists had too little memory on one rank, or messages between two, all ranks repeat the
-  /// batch.
+  /// batch. Lists become long enough for what any rank needed: the others would need it soon.
   bool grow_lists(int n) {
-    const bool grown = Base::grow_lists(n);
-    if (!rows_ || !Base::lists_overflow) return grown;
-    std::int64_t any = grown;
-    ranks_->sum({&any, 1});
-    return rows_->forget_lost() || any > 0;
+    if (!rows_ || !Base::lists_overflow) return Base::grow_lists(n);
+    ListDemand most;
+    for (const ListDemand& d : of_all_ranks(Base::list_demand())) {
+      most.overflows = std::max(most.overflows, d.overflows);
+      most.longest = std::max(most.longest, d.longest);
+    }
+    Base::grow_lists(n, most.overflows);
+    return rows_->forget_lost() || most.any();
   }
   template <class Updates>
   void repeat(int updates, Updates& u) {
@@ -218,29 +220,35 @@ class RankExec : public Base {
   /// Takes rows to their ranks between the pass that gives them their bins and the sort. Rows near
   /// solids, which such a pass leaves out, must have been predicted before.
   template <class First, class Near, class Gather>
-  void sort_on_ranks(const char* stage, const First& of, const Near& near, const Rows& rows,
-                     int bins, const int* id, int* order, int* start, const Gather& gather) {
+  const int* sort_on_ranks(const char* stage, const First& of, const Near& near, const Rows& rows,
+                           int bins, const int* id, int* order, int* start, const Gather& gather) {
     if constexpr (requires { near.pass; }) {
       throw Error(ExitCode::internal, "several ranks cannot run this sort");
     } else {
       const int of_layer = bins / rows_->layers();
+      const BinSort sort{rows_->bins(of_layer), bins, id, order, start};
+      if (sort.bins != std::exchange(sorted_bins_, sort.bins))  // no rows in others
+        Base::clear(reinterpret_cast<char*>(start), std::size_t(bins + 1) * sizeof *start);
+      Base::begin_sort(sort);
       const int all = rows_->route(*this, of.bin, of_layer, [&](const RowLists& to) {
+        const auto pass = Base::counting(sort, SelectRowsPass<First>{of, to});
         over(rows, [&](const RowRange& r) {
           if constexpr (PairPass<First>)
-            Base::pairs(r, SelectRowsPass<First>{of, to});
+            Base::pairs(r, pass);
           else
-            Base::items(r, SelectRowsPass<First>{of, to});
+            Base::items(r, pass);
         });
         this->mark(stage);
       });
+      Base::items(RowRange{rows.all, all}, Base::counting(sort, KnownBinPass{of.bin}));
       this->mark("exchange");
       if (not_counted_.size() == 0) not_counted_.resize(1);
       const int me = ranks_->rank();
       const GatherOwnPass<Gather> own{gather, start + rows_->slabs().low(me) * of_layer,
                                       start + rows_->slabs().high(me) * of_layer,
                                       not_counted_.data()};
-      Base::template sort_by_bin<true>(stage, KnownBinPass{of.bin}, near, all, bins, id, order,
-                                       start, own);
+      Base::sort_counted(sort, of.bin, all, own);
+      return start + sort.bins.end;
     }
   }
   /// Calls launch(range) for own rows: at once, or for those at the cuts beside the others.
@@ -267,19 +275,22 @@ class RankExec : public Base {
   }
   template <class Sum>
   Sum over_ranks(const Sum& mine) {
-    const std::vector<char> all = ranks_->all_gather(&mine, sizeof mine);
     Sum total;
-    for (std::size_t at = 0; at < all.size(); at += sizeof(Sum)) {
-      Sum one;
-      std::memcpy(static_cast<void*>(&one), all.data() + at, sizeof one);
-      total.add(one);
-    }
+    for (const Sum& one : of_all_ranks(mine)) total.add(one);
     return total;
+  }
+  template <class T>
+  std::vector<T> of_all_ranks(const T& mine) {
+    const std::vector<char> bytes = ranks_->all_gather(&mine, sizeof mine);
+    std::vector<T> all(bytes.size() / sizeof mine);
+    std::memcpy(static_cast<void*>(all.data()), bytes.data(), bytes.size());
+    return all;
   }
 
   Communicator* ranks_;
   std::unique_ptr<RankRows<Base>> rows_;
   typename Base::template Buffer<StepCounts> no_steps_, not_counted_;
+  BinRange sorted_bins_{};  ///< of the last sort
 };
 
 }  // namespace pbf::PBF_VARIANT

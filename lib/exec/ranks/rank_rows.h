@@ -35,6 +35,11 @@ class RankRows {
   RowState row_state() const { return {last_ - first_, particles_}; }
   const Slabs& slabs() const { return slabs_; }
   int layers() const { return int(slabs_.owners().size()); }
+  /// Those of the slab and its ghosts. bins: of a layer.
+  BinRange bins(int bins) const {
+    const int me = ranks_.rank();
+    return {std::max(slabs_.low(me) - 1, 0) * bins, std::min(slabs_.high(me) + 1, layers()) * bins};
+  }
   /// Own rows: those at the cuts below and above, which other ranks have as ghosts and which have
   /// ghosts as neighbors, and those between.
   struct Parts {
@@ -120,7 +125,7 @@ class RankRows {
     sorts_ = !e.rows.empty();
     if (sorts_) {
       if (++sorts_done_ % kBalanceEvery == 0) balance(c);
-      sorted_ = {row_fields(c, e.rows, pass), c.ids(), c.capacity(), {first_, last_}, all_};
+      sorted_ = {row_fields(c, e.rows, pass), c.capacity(), {first_, last_}, all_};
     }
     for (const FieldInfo* f : e.sums_within) clear(c, *f);
     add_within_ = [this, &c, sums = e.sums_within] {
@@ -131,7 +136,7 @@ class RankRows {
   /// Within a pass that sorts: takes rows to their ranks. select(lists) runs a SelectRowsPass for
   /// the own rows, once. bin: of each row; bins: of a layer. Returns the number of rows to sort.
   template <class Select>
-  int route(Exec& exec, const int* bin, int bins, const Select& select) {
+  int route(Exec& exec, int* bin, int bins, const Select& select) {
     bool selected = false;
     const auto lists = [&] {
       const RowLists to = routes_.lists(exec, slabs_, bins);
@@ -142,7 +147,7 @@ class RankRows {
       return to;
     };
     counted_ = false;
-    if (lost()) return lists(), routes_.leave_ghosts(exec, sorted_), all_;
+    if (lost()) return lists(), routes_.leave_ghosts(exec, sorted_, bin), all_;
     counted_ = Exec::lists_overflow && in_batch_ && counts_known_ && careful_ == 0;
     all_ = counted_ ? routes_.exchange_counted(exec, sorted_, bin, lists)
                     : routes_.exchange(exec, sorted_, bin, lists);
@@ -241,12 +246,12 @@ class RankRows {
   /// After a sort: which rows are this rank's, and which of them are ghosts elsewhere.
   template <class C>
   void find_own(C& c) {
-    const int bins = bin_count(c.p), per_layer = bins / c.p.layers, me = ranks_.rank();
+    const int per_layer = bin_count(c.p) / layers(), me = ranks_.rank();
     const int low = slabs_.low(me), high = slabs_.high(me);
     const int* start = c.data(field::bin_start);
     std::array<const int*, 10> from{start + low * per_layer, start + (low + 1) * per_layer,
                                     start + (high - 1) * per_layer, start + high * per_layer,
-                                    start + bins};
+                                    start + bins(per_layer).end};
     const std::array<const int*, 5> counts =
         counted_ ? routes_.counts() : std::array{start, start, start, start, start};
     std::ranges::copy(counts, from.begin() + 5);

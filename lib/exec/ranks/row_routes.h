@@ -18,14 +18,14 @@ namespace pbf::PBF_VARIANT {
 /// The rows of a solver before a sort.
 struct SortedRows {
   RowFields fields{};  ///< what goes along with a particle
-  int* id = nullptr;
-  int capacity = 0;  ///< rows
+  int capacity = 0;    ///< rows
   RowRange own{0, 0};
   int all = 0;
 };
 
-/// Each particle goes to the rank of its layer, and a copy to those of the adjacent layers. Rows
-/// that no longer belong here get a negative id, and the sort leaves them out.
+/// Each particle goes to the rank of its layer, and a copy to those of the adjacent layers. The
+/// bins of own rows that no longer belong here are outside the range of the sort, which leaves them
+/// out. Old ghosts get no bin.
 ///
 /// Either the ranks tell each other how many rows they send. Or, so that the host does not wait for
 /// the device, messages have room for some more rows than the last ones had. Then learn() tells
@@ -60,7 +60,7 @@ class RowRoutes {
   /// select(): fills lists(). bin: of each own row. Returns the number of rows with those that
   /// came.
   template <class Select>
-  int exchange(Exec& exec, const SortedRows& rows, const int* bin, const Select& select) {
+  int exchange(Exec& exec, const SortedRows& rows, int* bin, const Select& select) {
     const auto ranks = std::size_t(ranks_.size()), me = std::size_t(ranks_.rank());
     RowLists lists = select();
     std::vector<int> going = exec.values(count_.data(), int(ranks));
@@ -81,7 +81,7 @@ class RowRoutes {
         messages<Outgoing>(send_, going, words, [&](int r, std::uint32_t* to, int n) {
           exec.items(n * words, PackRowsPass{rows.fields, lists.list + r * room_, to});
         });
-    leave(exec, rows, lists, bin, going);
+    leave_ghosts(exec, rows, bin);
     const std::vector<Incoming> in =
         messages<Incoming>(receive_, coming, words, [](int, std::uint32_t*, int) {});
     exec.exchange(out, in);
@@ -94,12 +94,11 @@ class RowRoutes {
   }
   /// The same with room for more rows than at the last exchange, without waiting for any rank.
   template <class Select>
-  int exchange_counted(Exec& exec, const SortedRows& rows, const int* bin, const Select& select) {
+  int exchange_counted(Exec& exec, const SortedRows& rows, int* bin, const Select& select) {
     for (std::size_t k = 0; k < known_.size(); ++k) most_[k] = room_for(known_[k]);
     room_ = std::max({room_, most_[go_down], most_[go_up]});
     const RowLists lists = select();
     const int words = rows.fields.words(), me = ranks_.rank();
-    std::vector<int> going(std::size_t(ranks_.size()));
     std::vector<Outgoing> out;
     std::vector<Incoming> in;
     reserve(send_, counted_words(words, most_[go_down]) + counted_words(words, most_[go_up]));
@@ -108,8 +107,7 @@ class RowRoutes {
     std::uint32_t *to = send_.data(), *from = receive_.data();
     for (const int r : {me - 1, me + 1}) {
       if (r < 0 || r >= ranks_.size()) continue;
-      const int n = going[std::size_t(r)] = most_[r < me ? go_down : go_up],
-                coming = most_[r < me ? come_down : come_up];
+      const int n = most_[r < me ? go_down : go_up], coming = most_[r < me ? come_down : come_up];
       exec.items(n * words, PackCountedPass{{rows.fields, lists.list + r * room_, to + kHeadWords},
                                             lists.count + r});
       out.push_back({r, to, counted_words(words, n) * sizeof *to});
@@ -117,13 +115,13 @@ class RowRoutes {
       to += counted_words(words, n), from += counted_words(words, coming);
     }
     exec.exchange(out, in);
-    leave(exec, rows, lists, bin, going);
+    leave_ghosts(exec, rows, bin);
     int all = rows.all;
     for (const Incoming& i : in) {
       const auto* head = static_cast<const std::uint32_t*>(i.data);
       int& n = most_[i.from < me ? come_down : come_up];
       n = std::min(n, rows.capacity - all);
-      exec.items(n * words, UnpackCountedPass{{rows.fields, head + kHeadWords, all}, rows.id});
+      exec.items(n * words, UnpackCountedPass{{rows.fields, head + kHeadWords, all}, bin});
       all += n;
       heads_[i.from < me ? 0 : 1] = reinterpret_cast<const int*>(head);
     }
@@ -136,9 +134,9 @@ class RowRoutes {
     return {me > 0 ? count + me - 1 : none, me + 1 < ranks ? count + me + 1 : none, count + ranks,
             me > 0 ? heads_[0] : none, me + 1 < ranks ? heads_[1] : none};
   }
-  static void leave_ghosts(Exec& exec, const SortedRows& rows) {
-    exec.items(RowRange{0, rows.own.first}, LeaveGhostsPass{rows.id});
-    exec.items(RowRange{rows.own.last, rows.all}, LeaveGhostsPass{rows.id});
+  static void leave_ghosts(Exec& exec, const SortedRows& rows, int* bin) {
+    exec.items(RowRange{0, rows.own.first}, WithoutBinPass{bin});
+    exec.items(RowRange{rows.own.last, rows.all}, WithoutBinPass{bin});
   }
   /// After exchange_counted(). False if a row found no room, or went to another rank than the
   /// adjacent ones: the sort lacks it.
@@ -180,14 +178,6 @@ class RowRoutes {
       at += size;
     }
     return all;
-  }
-  /// going: most rows in each list.
-  static void leave(Exec& exec, const SortedRows& rows, const RowLists& lists, const int* bin,
-                    const std::vector<int>& going) {
-    for (int r = 0; r < lists.number; ++r)
-      exec.items(going[std::size_t(r)], LeaveListedPass{lists.ranks, lists.list + r * lists.room,
-                                                        lists.count + r, bin, rows.id});
-    leave_ghosts(exec, rows);
   }
   static void reserve(Buffer<std::uint32_t>& buffer, std::size_t words) {
     if (buffer.size() < words) buffer.resize(words + words / 4);

@@ -83,12 +83,11 @@ using GatherNeeds =
 template <class G, class First, class Gather, class Listed>
 void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
                const Listed& listed) {
-  c.exec.template sort_by_bin<G::changes_rows>(c.booked(stage), first, listed, c.rows(),
-                                               bin_count(c.p), c[other<field::id>], c.sort_order(),
-                                               c[field::bin_start], gather);
+  const int* rows = c.exec.template sort_by_bin<G::changes_rows>(
+      c.booked(stage), first, listed, c.rows(), bin_count(c.p), c[other<field::id>], c.sort_order(),
+      c[field::bin_start], gather);
   if constexpr (G::changes_rows)
-    if (changes_rows(c.scene))
-      c.items(1, TakeRowsPass{c[field::bin_start] + bin_count(c.p), c[field::row_state]});
+    if (changes_rows(c.scene)) c.items(1, TakeRowsPass{rows, c[field::row_state]});
 }
 /// velocity, velocity_out: the arrays from which and into which the pass gathers. counts: null if
 /// particles do not move. order: of the rows before the sort.

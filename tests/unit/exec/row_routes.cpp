@@ -35,7 +35,7 @@ std::vector<Particle> particles(const Moved& moved) {
   return all;
 }
 
-/// One rank with rows of two fields, one of which is the id.
+/// One rank with rows of an id, a bin and values.
 struct Rank {
   Communicator& ranks;
   Slabs slabs{std::vector<std::int64_t>(kLayers, 40), kRanks, 1};
@@ -64,11 +64,11 @@ struct Rank {
     rows.own.last = put([&](int l) { return slabs.low(me) <= l && l < slabs.high(me); });
     rows.all = put([&](int l) { return l == slabs.high(me); });
     rows.capacity = capacity;
-    rows.id = id.data();
     rows.fields.rows[0] = reinterpret_cast<std::uint32_t*>(id.data());
-    rows.fields.rows[1] = reinterpret_cast<std::uint32_t*>(value.data());
-    rows.fields.begin[1] = 1, rows.fields.begin[2] = 5;
-    rows.fields.fields = 2;
+    rows.fields.rows[1] = reinterpret_cast<std::uint32_t*>(bin.data());
+    rows.fields.rows[2] = reinterpret_cast<std::uint32_t*>(value.data());
+    rows.fields.begin[1] = 1, rows.fields.begin[2] = 2, rows.fields.begin[3] = 6;
+    rows.fields.fields = 3;
   }
   bool exchange(bool counted) {
     const auto select = [&] {
@@ -80,12 +80,14 @@ struct Rank {
                        : routes.exchange(exec, rows, bin.data(), select);
     return !counted || routes.learn(exec.values(routes.counts()));
   }
-  /// The particles that a sort would keep, each once, with its values; false otherwise.
+  /// The particles whose bins are in the slab or next to it, each once, with its values; false
+  /// otherwise.
   bool has_exactly(const std::vector<Particle>& all) const {
-    const int low = slabs.low(ranks.rank()) - 1, high = slabs.high(ranks.rank());
+    const int low = std::max(slabs.low(ranks.rank()) - 1, 0), high = slabs.high(ranks.rank());
     std::map<int, int> found;
     for (int i = 0; i < rows.all; ++i) {
-      if (id[std::size_t(i)] < 0) continue;
+      const int at = bin[std::size_t(i)];
+      if (at < low * kBins || at >= (high + 1) * kBins) continue;
       ++found[id[std::size_t(i)]];
       for (int k = 0; k < 4; ++k)
         if (value[std::size_t(4 * i + k)] != float(id[std::size_t(i)]) + 0.25f * float(k))
