@@ -7,9 +7,29 @@
 #include "kernels/cell_index.h"
 #include "kernels/params.h"
 #include "kernels/pass_shapes.h"
+#include "kernels/row_state.h"
 #include "kernels/step_counts.h"
 
 namespace pbf::PBF_VARIANT {
+
+/// A pass over the rows from `first` on, as items 0, 1, ...
+template <class Pass>
+struct From {
+  Pass pass;
+  int first;
+  PBF_HD auto operator()(int i) const { return pass(first + i); }
+  PBF_HD auto counts(int i) const { return pass.counts(first + i); }
+  PBF_HD auto terms(int i, const MeasureUnits& unit) const { return pass.terms(first + i, unit); }
+};
+/// A pass over listed rows, without those that are not own rows.
+template <class Pass>
+struct OwnOf {
+  Pass pass;
+  RowRange own;
+  PBF_HD void operator()(int k) const {
+    if (const int i = pass.row(k); i >= own.first && i < own.last) pass(k);
+  }
+};
 
 /// The ranks that need a row: that of its layer of cells, and those of the adjacent layers.
 struct LayerRanks {

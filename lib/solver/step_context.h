@@ -57,7 +57,6 @@ struct StepContext {
   using Buffer = typename Exec::template Buffer<T>;
   static constexpr std::size_t padding = std::size_t(about(Exec::backend).padding);
   static constexpr Precision precision = precision_of<Real>;
-
   static constexpr bool changes_rows = FeatureSet::changes_rows;
 
   StepContext(Exec& executor, const Scene& of, const Plan& planned)
@@ -144,9 +143,13 @@ struct StepContext {
   }
   const char* booked(const char* stage) const { return booked_as ? booked_as : stage; }
   void make_lists() {
-    lists = exec.build_lists(rows(), capacity(), position(), data(field::bin_start), p);
-    lists_are_current = true;
-    iterations = 0;
+    lists_are_current = true, iterations = 0;
+    const auto make = [this](const auto& of) {
+      lists = exec.build_lists(of, capacity(), position(), data(field::bin_start), p);
+    };
+    if constexpr (requires { exec.before_known(make); })
+      if (exec.before_known(make)) return;
+    make(rows());
   }
 
   /// The present rows of a field; null if the program does not use it.

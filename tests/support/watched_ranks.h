@@ -22,6 +22,9 @@ struct RankWatch {
   std::string forget{};               ///< name of the field whose exchanges bring nothing
   std::int64_t poisoned = 0;          ///< copies of rows
   int repeated = 0;                   ///< batches
+  int most = 0;                       ///< own rows after a sort
+  bool looks = true;                  ///< at rows after a sort, for which the host waits
+  int early_lists = 0;                ///< made before the host knew for how many rows
   int split = 0;                      ///< passes with launches of their own for rows at cuts
   bool has_each_own_row_once = true;  ///< every launch over rows
 };
@@ -49,6 +52,20 @@ class EdgeCpu : public CpuExec {
     if constexpr (requires { pass.own; }) launched_.emplace_back(pass.own.first, pass.own.last);
     CpuExec::listed(count, most, pass);
   }
+
+  /// As on a device, lists are made before the host knows for how many rows.
+  struct UnknownRows {
+    const int *first, *last;
+    int most;
+  };
+  using CpuExec::build_lists;
+  template <class Real>
+  Lists build_lists(const UnknownRows& rows, int far, const Vec4<Real>* position,
+                    const int* bin_start, const Params<Real>& p) {
+    ++early_lists;
+    return build_lists(RowRange{*rows.first, *rows.last}, far, position, bin_start, p);
+  }
+  int early_lists = 0;
 
   /// The sort of a device.
   void begin_sort(const BinSort& s) { counts_.resize(std::size_t(s.all) + 1); }
@@ -135,7 +152,10 @@ class WatchedExec : public PeriodicExec<RankExec<EdgeCpu>> {
     look_at_launches(sorts);
     arriving_.clear();
     Base::after(c);
+    watch_.early_lists = early_lists;
     if (sorts) {
+      if (!watch_.looks) return;
+      watch_.most = std::max(watch_.most, rows()->last() - rows()->first());
       for (const FieldMemory& a : c.arrays())
         if (a.second || std::ranges::find(exchange_.rows, a.field) == exchange_.rows.end())
           poison(c, *a.field, a.begin);

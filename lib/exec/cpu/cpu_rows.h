@@ -35,15 +35,21 @@ class CpuRows {
     std::memmove(begin, begin + by, bytes);
   }
   std::vector<int> values(const int* from, int n) { return {from, from + n}; }
+  /// The numbers at some places, as they are behind what was launched; answer() waits for them.
   template <std::size_t n>
-  std::array<int, n> values(const std::array<const int*, n>& from) {
+  void ask(const std::array<const int*, n>& from) {
+    asked_.assign(from.begin(), from.end());
+  }
+  template <std::size_t n>
+  std::array<int, n> answer() {
     std::array<int, n> out;
-    for (std::size_t k = 0; k < n; ++k) out[k] = *from[k];
+    for (std::size_t k = 0; k < n; ++k) out[k] = *asked_[k];
     return out;
   }
 
  private:
   Communicator* ranks_ = nullptr;
+  std::vector<const int*> asked_{};
 };
 
 }  // namespace pbf::PBF_VARIANT

@@ -208,12 +208,12 @@ bool CudaExec::grow_lists(int n, std::int64_t overflows_elsewhere) {
 }
 
 double CudaExec::hidden_exchange() const {
-  if (beside_.mean() == 0) return 0;
+  if (!edges_ || edges_->hidden() == 0) return 0;
   const auto& entries = clock_.entries();
   const auto exchange = std::ranges::find(entries, "exchange", &StageTime::name);
   if (exchange == entries.end()) return 0;
   const double of_update = exchange->seconds / (double(kSampleEvery) * stage_samples_);
-  return std::clamp((apart_.mean() - beside_.mean()) / of_update, 0.0, 1.0);
+  return std::min(edges_->hidden() / of_update, 1.0);
 }
 
 std::vector<StageTime> CudaExec::stages(double seconds) const {

@@ -15,7 +15,6 @@
 #include "lib/exec/cuda/recorded.cuh"
 #include "lib/exec/cuda/repeat.cuh"
 #include "lib/exec/cuda/shared_pass.cuh"
-#include "lib/exec/cuda/timed_updates.cuh"
 #include "lib/solver/executor.h"
 
 namespace pbf::PBF_VARIANT {
@@ -23,6 +22,7 @@ namespace pbf::PBF_VARIANT {
 class CudaExec : public CudaSums {
  public:
   using Lists = TransposedLists;
+  using UnknownRows = RowsBetween;  ///< of ranks: rows whose numbers the host does not know yet
   static constexpr Backend backend = Backend::cuda;
   static constexpr bool lists_overflow = true;
   template <class T>
@@ -202,6 +202,7 @@ class CudaExec : public CudaSums {
   template <class Rows, class Real>
   Lists build_lists(const Rows& n, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {
+    if constexpr (std::is_same_v<Rows, RowsBetween>) launcher_.alone = true;
     return lists_.make(launcher_, n, far, position, bin_start, p);
   }
 
@@ -249,23 +250,19 @@ class CudaExec : public CudaSums {
     }
     return false;
   }
-  /// An update for stage times, or one of two for their sum: without exchanges beside passes, and
-  /// with them.
+  /// In turns an update for stage times, in which exchanges are not beside passes, and one for the
+  /// time that exchanges take beside passes.
   template <class Updates>
   void sample(Updates& u) {
-    const int kind = edges_ ? samples_ % 3 : 0;
-    auto edges = kind < 2 ? std::move(edges_) : nullptr;
-    if (kind == 0) {
-      ++stage_samples_;
-      profiling_ = true;
-      u.step(1);
-      book(kSampleEvery);
-      profiling_ = false;
-    } else {
-      (kind == 1 ? apart_ : beside_).add(launcher_, [&] { u.step(1); });
-    }
-    if (edges) edges_ = std::move(edges);
-    ++samples_;
+    if (edges_ && samples_++ % 2 == 1)
+      return edges_->watch([&] { u.step(1); }, [&] { synchronize(); });
+    auto edges = std::move(edges_);
+    ++stage_samples_;
+    profiling_ = true;
+    u.step(1);
+    book(kSampleEvery);
+    profiling_ = false;
+    edges_ = std::move(edges);
   }
   /// The share of the stage exchange that runs beside other stages.
   double hidden_exchange() const;
@@ -286,7 +283,6 @@ class CudaExec : public CudaSums {
   RecordedUpdates recorded_;
   HostCopy copy_;
   StageClock clock_;
-  TimedUpdates apart_, beside_;
   int samples_ = 0, stage_samples_ = 0;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()

@@ -22,6 +22,24 @@ struct ReadIntsPass {
   PBF_HD void operator()(int k) const { to[k] = *from[std::size_t(k)]; }
 };
 
+class Event {
+ public:
+  Event() = default;
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() {
+    if (event_) cudaEventDestroy(event_);
+  }
+  void record(cudaStream_t stream) {
+    if (!event_) PBF_CUDA_CHECK(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming));
+    PBF_CUDA_CHECK(cudaEventRecord(event_, stream));
+  }
+  cudaEvent_t get() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
 class CudaRows {
  public:
   /// Waits for the stream. Meanwhile a rank answers others, and finds those that hang.
@@ -86,13 +104,17 @@ class CudaRows {
     return {values_.data(), values_.data() + n};
   }
   template <std::size_t n>
-  std::array<int, n> values(const std::array<const int*, n>& from) {
-    make_room(n);
+  void ask(const std::array<const int*, n>& from) {
+    if (answers_.size() < n) answers_.resize(n);
     launcher_.start(item_kernel<int, ReadIntsPass<n>>, int(n), kBlock, 0, int(n),
-                    ReadIntsPass<n>{from, values_.data()});
-    synchronize();
+                    ReadIntsPass<n>{from, answers_.data()});
+    answered_.record(launcher_.ready());
+  }
+  template <std::size_t n>
+  std::array<int, n> answer() {
+    link_->wait(answered_.get());
     std::array<int, n> out;
-    std::copy_n(values_.data(), n, out.begin());
+    std::copy_n(answers_.data(), n, out.begin());
     return out;
   }
 
@@ -105,7 +127,8 @@ class CudaRows {
   void make_room(std::size_t n) {
     if (values_.size() < n) values_.resize(n);
   }
-  PinnedBuffer<int> values_;
+  PinnedBuffer<int> values_, answers_;
+  Event answered_;
 };
 
 }  // namespace pbf::PBF_VARIANT

@@ -20,6 +20,7 @@ class HostLink final : public DeviceLink {
   std::string name() const override { return "through the host"; }
   bool in_stream() const override { return false; }
   void wait(cudaStream_t stream) override { PBF_CUDA_CHECK(cudaStreamSynchronize(stream)); }
+  void wait(cudaEvent_t event) override { PBF_CUDA_CHECK(cudaEventSynchronize(event)); }
   void exchange(const std::vector<Outgoing>& out, const std::vector<Incoming>& in,
                 cudaStream_t stream) override {
     const auto copy = [&](cudaMemcpyKind kind) {
@@ -53,11 +54,10 @@ class NcclLink final : public DeviceLink {
   }
   bool in_stream() const override { return true; }
   void wait(cudaStream_t stream) override {
-    ranks_.wait_until([stream] {
-      const cudaError_t now = cudaStreamQuery(stream);
-      if (now != cudaErrorNotReady) PBF_CUDA_CHECK(now);
-      return now == cudaSuccess;
-    });
+    wait_for([stream] { return cudaStreamQuery(stream); });
+  }
+  void wait(cudaEvent_t event) override {
+    wait_for([event] { return cudaEventQuery(event); });
   }
   std::string name() const override {
     int v = 0;
@@ -83,6 +83,14 @@ class NcclLink final : public DeviceLink {
   }
 
  private:
+  template <class Query>
+  void wait_for(const Query& query) {
+    ranks_.wait_until([&] {
+      const cudaError_t now = query();
+      if (now != cudaErrorNotReady) PBF_CUDA_CHECK(now);
+      return now == cudaSuccess;
+    });
+  }
   void check(int result, const char* call) const {
     if (result != 0)
       throw Error(ExitCode::unavailable,

@@ -22,6 +22,8 @@ class DeviceLink {
                         cudaStream_t stream) = 0;
   /// Returns when the stream is done. Throws Error(unavailable) if another rank hangs.
   virtual void wait(cudaStream_t stream) = 0;
+  /// The same for what was in a stream before the event.
+  virtual void wait(cudaEvent_t event) = 0;
 };
 
 /// To be called on all ranks. NCCL, if every rank has the library and a device of its own; through

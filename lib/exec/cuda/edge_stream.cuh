@@ -4,7 +4,9 @@
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "lib/exec/cuda/kernel_start.cuh"
 
@@ -26,6 +28,8 @@ class EdgeStream {
   EdgeStream& operator=(const EdgeStream&) = delete;
   ~EdgeStream() {
     for (cudaEvent_t e : {main_, edges_, exchanged_}) cudaEventDestroy(e);
+    for (const Timed& t : timed_)
+      for (cudaEvent_t e : {t.begin, t.end, t.arrived}) cudaEventDestroy(e);
     cudaStreamDestroy(stream_);
   }
 
@@ -41,6 +45,7 @@ class EdgeStream {
     PBF_CUDA_CHECK(cudaEventRecord(edges_, stream_));
     launcher.alone = true;
     inner();
+    launcher.note_arrival();
     PBF_CUDA_CHECK(cudaStreamWaitEvent(launcher.stream, edges_, 0));
     launcher.alone = true;
     launcher.awaited = awaited;
@@ -50,18 +55,56 @@ class EdgeStream {
   template <class Exchange>
   void exchange(Launcher& launcher, const Exchange& exchange) {
     if (!launcher.split) follow(launcher.ready());
+    Timed* t = watching_ ? &next() : nullptr;
+    if (t) PBF_CUDA_CHECK(cudaEventRecord(t->begin, stream_));
     exchange(stream_);
+    if (t) PBF_CUDA_CHECK(cudaEventRecord(t->end, stream_));
     PBF_CUDA_CHECK(cudaEventRecord(exchanged_, stream_));
     launcher.awaited = exchanged_;
+    launcher.arrived = t ? t->arrived : nullptr;
   }
+  /// Times the exchanges of one update(). wait(): for the streams.
+  template <class Update, class Wait>
+  void watch(const Update& update, const Wait& wait) {
+    watching_ = true;
+    used_ = 0;
+    update();
+    watching_ = false;
+    wait();
+    for (std::size_t k = 0; k < used_; ++k) {
+      float whole = 0, waited = 0;
+      PBF_CUDA_CHECK(cudaEventElapsedTime(&whole, timed_[k].begin, timed_[k].end));
+      PBF_CUDA_CHECK(cudaEventElapsedTime(&waited, timed_[k].arrived, timed_[k].end));
+      hidden_ += 1e-3 * double(whole - std::clamp(waited, 0.0f, whole));
+    }
+    ++watched_;
+  }
+  /// s, in an update: how long exchanges ran while the other stream had something else to do.
+  double hidden() const { return watched_ > 0 ? hidden_ / watched_ : 0; }
 
  private:
+  /// Of an exchange: when it began and ended, and when the other stream came to need it.
+  struct Timed {
+    cudaEvent_t begin = nullptr, end = nullptr, arrived = nullptr;
+  };
+  Timed& next() {
+    if (used_ == timed_.size()) {
+      Timed& t = timed_.emplace_back();
+      for (cudaEvent_t* e : {&t.begin, &t.end, &t.arrived}) PBF_CUDA_CHECK(cudaEventCreate(e));
+    }
+    return timed_[used_++];
+  }
   void follow(cudaStream_t main) {
     PBF_CUDA_CHECK(cudaEventRecord(main_, main));
     PBF_CUDA_CHECK(cudaStreamWaitEvent(stream_, main_, 0));
   }
   cudaStream_t stream_ = nullptr;
   cudaEvent_t main_ = nullptr, edges_ = nullptr, exchanged_ = nullptr;
+  bool watching_ = false;
+  std::vector<Timed> timed_;  ///< of the watched update the first `used_`
+  std::size_t used_ = 0;
+  double hidden_ = 0;  ///< s, in `watched_` updates
+  int watched_ = 0;
 };
 
 }  // namespace pbf::PBF_VARIANT

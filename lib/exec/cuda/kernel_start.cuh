@@ -29,9 +29,22 @@ __device__ __forceinline__ int end_of(int n) { return n; }
 __device__ __forceinline__ int end_of(const CountedRows& rows) { return int(rows.state->rows); }
 __device__ __forceinline__ int end_of(const RowRange& rows) { return rows.last; }
 
+/// Rows *first ... *last - 1, numbers on the device; at most `most`. What was launched last must
+/// have written them, and the launch is alone.
+struct RowsBetween {
+  const int *first, *last;
+  int most;
+};
+inline int most(const RowsBetween& rows) { return rows.most; }
+__device__ __forceinline__ int first_of(const RowsBetween& rows) { return *rows.first & ~31; }
+__device__ __forceinline__ int end_of(const RowsBetween& rows) { return *rows.last; }
+
 /// Whether a launch leaves out row i, which is below the end.
 __device__ __forceinline__ bool leaves_out(int, int) { return false; }
 __device__ __forceinline__ bool leaves_out(const CountedRows&, int) { return false; }
+__device__ __forceinline__ bool leaves_out(const RowsBetween& rows, int i) {
+  return i < *rows.first;
+}
 __device__ __forceinline__ bool leaves_out(const RowRange& rows, int i) {
   return i < rows.first || rows.leaves_out(i);
 }
@@ -53,12 +66,18 @@ struct Launcher {
   bool overlap = false;           ///< the device has programmatic dependent launch
   bool alone = false;             ///< the next launch does without
   cudaEvent_t awaited = nullptr;  ///< what is next launched, other than by EdgeStream, waits for it
+  cudaEvent_t arrived = nullptr;  ///< not null: to be recorded before the stream waits for that
   bool split = false;             ///< nothing else was launched since EdgeStream::beside()
 
+  void note_arrival() {
+    if (arrived) PBF_CUDA_CHECK(cudaEventRecord(arrived, stream));
+    arrived = nullptr;
+  }
   /// The stream for anything that needs all that was launched before.
   cudaStream_t ready() {
     split = false;
     if (awaited) {
+      note_arrival();
       PBF_CUDA_CHECK(cudaStreamWaitEvent(stream, awaited, 0));
       awaited = nullptr;
       alone = true;

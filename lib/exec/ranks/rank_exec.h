@@ -14,25 +14,6 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// A pass over the rows from `first` on, as items 0, 1, ...
-template <class Pass>
-struct From {
-  Pass pass;
-  int first;
-  PBF_HD auto operator()(int i) const { return pass(first + i); }
-  PBF_HD auto counts(int i) const { return pass.counts(first + i); }
-  PBF_HD auto terms(int i, const MeasureUnits& unit) const { return pass.terms(first + i, unit); }
-};
-/// A pass over listed rows, without those that are not own rows.
-template <class Pass>
-struct OwnOf {
-  Pass pass;
-  RowRange own;
-  PBF_HD void operator()(int k) const {
-    if (const int i = pass.row(k); i >= own.first && i < own.last) pass(k);
-  }
-};
-
 /// The number of a rank's rows changes.
 struct CountsRows {
   static constexpr bool changes_rows = true;
@@ -161,6 +142,17 @@ class RankExec : public Base {
   Lists build_lists(const Rows& rows, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {
     return Base::build_lists(RowRange(rows), far, position, bin_start, p);
+  }
+  /// Calls make(rows) for the own rows if the host does not know their number yet.
+  template <class Make>
+  bool before_known(const Make& make) {
+    if constexpr (requires { typename Base::UnknownRows; })
+      if (rows_ && rows_->asked()) {
+        const auto [first, last] = rows_->own();
+        make(typename Base::UnknownRows{first, last, rows_->most()});
+        return true;
+      }
+    return false;
   }
   /// If lists had too little memory on one rank, or messages between two, all ranks repeat the
   /// batch. Lists become long enough for what any rank needed: the others would need it soon.

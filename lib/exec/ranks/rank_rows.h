@@ -15,10 +15,9 @@
 
 #include "kernels/pass_rank_rows.h"
 #include "kernels/row_state.h"
-#include "lib/exec/ranks/row_fields.h"
+#include "lib/exec/ranks/rank_fields.h"
 #include "lib/exec/ranks/row_routes.h"
 #include "lib/program/exchanges.h"
-#include "lib/program/features/solids.h"
 #include "lib/solver/internal_state.h"
 
 namespace pbf::PBF_VARIANT {
@@ -27,12 +26,17 @@ template <class Exec>
 class RankRows {
  public:
   explicit RankRows(Communicator& ranks) : ranks_(ranks), routes_(ranks) {}
-  int first() const { return first_; }          ///< own rows
-  int last() const { return last_; }            ///< excluded
-  int all() const { return all_; }              ///< with ghosts
+  int first() { return known().first_; }        ///< own rows
+  int last() { return known().last_; }          ///< excluded
+  int all() { return known().all_; }            ///< with ghosts
   int particles() const { return particles_; }  ///< of all ranks
   /// What field::row_state is without ghosts.
-  RowState row_state() const { return {last_ - first_, particles_}; }
+  RowState row_state() { return {last() - first(), particles_}; }
+  /// After a sort, until first(), last(), all() and what needs them: whether the executor knows
+  /// these numbers and the host does not; where first() and last() are; the most that all() is.
+  bool asked() const { return asked_ != nullptr; }
+  std::array<const int*, 2> own() const { return own_; }
+  int most() const { return all_; }
   const Slabs& slabs() const { return slabs_; }
   int layers() const { return int(slabs_.owners().size()); }
   /// Those of the slab and its ghosts. bins: of a layer.
@@ -45,12 +49,10 @@ class RankRows {
   struct Parts {
     RowRange low, inner, high;
   };
-  Parts parts() const {
-    return {{first_, low_end_}, {low_end_, high_begin_}, {high_begin_, last_}};
-  }
+  Parts parts() { return {{first(), low_end_}, {low_end_, high_begin_}, {high_begin_, last_}}; }
   /// Whether rows at the cuts are worth launches of their own in the pass of the last before(): an
   /// exchange comes next to it, and most rows are not at a cut.
-  bool overlap() const { return overlap_ && high_begin_ - low_end_ > (last_ - first_) / 2; }
+  bool overlap() { return overlap_ && (last() - first()) / 2 < high_begin_ - low_end_; }
   /// To be called between the launches of a pass that sums over particles.
   void add_within() const { add_within_(); }
 
@@ -85,7 +87,7 @@ class RankRows {
   /// Leaves its own rows, moved to the front; false if there were no others.
   template <class C>
   bool drop_ghosts(C& c) {
-    if (first_ == 0 && last_ == all_) return false;
+    if (first() == 0 && last_ == all_) return false;
     const int own = last_ - first_;
     forget_near(c);
     for (const FieldInfo* f : c.plan.program.fields)
@@ -115,21 +117,22 @@ class RankRows {
     const bool first = !c.iterating || c.iteration == 0;
     const Exchange e = exchanged_.before(pass, first, program);
     has_exchanged_ = !e.sums.empty() || !e.ghosts.empty();
-    for (const FieldInfo* f : e.sums) add_up(c, *f);
+    for (const FieldInfo* f : e.sums) add_up_field(c, *f, ranks_);
     if (ranks_.rank() != 0)
-      for (const FieldInfo* f : e.from_zero) clear(c, *f);
+      for (const FieldInfo* f : e.from_zero) clear_field(c, *f);
     for (const FieldInfo* f : pass.flips) c.flip(*f);  // named as they are after the flips
     if (!e.ghosts.empty() && !lost()) copy_ghosts(c, e.ghosts);
     for (const FieldInfo* f : pass.flips) c.flip(*f);
     overlap_ = beside_exchange_.contains(&pass);
     sorts_ = !e.rows.empty();
     if (sorts_) {
-      if (++sorts_done_ % kBalanceEvery == 0) balance(c);
+      ++sorts_done_;
+      if (!lost() && (sorts_done_ % kBalanceEvery == 0 || crowded_)) balance(c);
       sorted_ = {row_fields(c, e.rows, pass), c.capacity(), {first_, last_}, all_};
     }
-    for (const FieldInfo* f : e.sums_within) clear(c, *f);
+    for (const FieldInfo* f : e.sums_within) clear_field(c, *f);
     add_within_ = [this, &c, sums = e.sums_within] {
-      for (const FieldInfo* f : sums) add_up(c, *f);
+      for (const FieldInfo* f : sums) add_up_field(c, *f, ranks_);
     };
     return ranks_.rank() == 0 || !e.on_one_rank;
   }
@@ -184,64 +187,29 @@ class RankRows {
   using Fields = Exchange::Fields;
   static constexpr int kBalanceEvery = 64;  ///< sorts
 
-  /// All ranks learn whether one of them has lost a row in the last sort. The host gets here while
-  /// the device makes lists, so that nothing waits.
+  /// All ranks learn whether one has lost a row in the last sort, or is crowded. The host gets here
+  /// while the device makes lists, so that nothing waits.
   void agree() {
+    known();
     if (agreed_) return;
     agreed_ = true;
-    std::int64_t any = lost_;
-    ranks_.sum({&any, 1});
-    lost_ = any > 0;
+    std::array<std::int64_t, 2> any{lost_, crowded_};
+    ranks_.sum(any);
+    lost_ = any[0] > 0, crowded_ = any[1] > 0;
   }
   /// Until the next sort no rows are known to be at a cut.
-  void only_own(int n) { first_ = low_end_ = high_begin_ = 0, last_ = all_ = n; }
-  template <class C>
-  static std::size_t bytes_in_all(C& c, const FieldInfo& f) {
-    return std::size_t(c.rows_of(f)) * std::size_t(f.bytes(C::precision));
-  }
-  template <class C>
-  static void clear(C& c, const FieldInfo& f) {
-    if (char* at = c.bytes_of(f)) c.exec.clear(at, bytes_in_all(c, f));
-  }
-  template <class C>
-  void add_up(C& c, const FieldInfo& f) {
-    if (f.type == Type::int64) return add_up_as<std::int64_t>(c, f);
-    if (f.type == Type::int32) return add_up_as<std::int32_t>(c, f);
-    throw Error(ExitCode::internal, "only whole numbers add up");
-  }
-  template <class Int, class C>
-  void add_up_as(C& c, const FieldInfo& f) {
-    auto* at = reinterpret_cast<Int*>(c.bytes_of(f));
-    std::vector<Int> mine(bytes_in_all(c, f) / sizeof(Int));
-    c.exec.to_host(at, mine.size(), mine.data());
-    std::vector<std::int64_t> sums(mine.begin(), mine.end());
-    ranks_.sum(sums);
-    std::copy(sums.begin(), sums.end(), mine.begin());
-    c.exec.to_device(mine.data(), mine.size(), at);
+  void only_own(int n) {
+    asked_ = nullptr;
+    first_ = low_end_ = high_begin_ = 0, last_ = all_ = n;
   }
 
-  /// No row counts as near a solid. The features mark those that they know of, which are not all
-  /// for which there is memory.
-  template <class C>
-  static void forget_near(C& c) {
-    using Real = typename C::Real;
-    auto* way = c.data(field::near_way_left);
-    if (!way) return;
-    int* count = c.data(field::near_count);
-    c.exec.all_listed(count, c.capacity(),
-                      LeaveNearPass<Real>{c.data(field::near_row), reinterpret_cast<Real*>(way)});
-    c.exec.clear(reinterpret_cast<char*>(count), sizeof *count);
-  }
-
-  /// New cuts, if the ranks have become unequal. They follow from what all ranks know.
+  /// New cuts, if ranks have become unequal: the same on all ranks.
   template <class C>
   void balance(C& c) {
     std::vector<std::int64_t> in_layer =
         c.exec.own_in_bins(c.p.cells_z, LayerPass<typename C::Real>{c.p, c.position()});
     ranks_.sum(in_layer);
-    const Slabs before = slabs_;
-    slabs_.balance(in_layer);
-    if (slabs_ != before) counts_known_ = false;
+    if (slabs_.balance(in_layer)) counts_known_ = false;
   }
   /// After a sort: which rows are this rank's, and which of them are ghosts elsewhere.
   template <class C>
@@ -255,12 +223,21 @@ class RankRows {
     const std::array<const int*, 5> counts =
         counted_ ? routes_.counts() : std::array{start, start, start, start, start};
     std::ranges::copy(counts, from.begin() + 5);
-    const std::array<int, 10> at = c.exec.values(from);
+    c.exec.ask(from);
+    asked_ = &c.exec;
+    own_ = {from[0], from[3]};
+    agreed_ = false;
+  }
+  /// When the executor has answered.
+  RankRows& known() {
+    if (!asked_) return *this;
+    const std::array<int, 10> at = std::exchange(asked_, nullptr)->template answer<10>();
     first_ = at[0], low_end_ = at[1], high_begin_ = at[2], last_ = at[3], all_ = at[4];
     if (counted_) lost_ = !routes_.learn({at[5], at[6], at[7], at[8], at[9]});
-    agreed_ = !counted_;
-    if (me == 0) low_end_ = first_;
-    if (me == ranks_.size() - 1) high_begin_ = last_;
+    crowded_ = slabs_.crowded(last_ - first_);
+    if (ranks_.rank() == 0) low_end_ = first_;
+    if (ranks_.rank() == ranks_.size() - 1) high_begin_ = last_;
+    return *this;
   }
   template <class C>
   void copy_ghosts(C& c, const Fields& fields) {
@@ -285,10 +262,13 @@ class RankRows {
   Communicator& ranks_;
   Slabs slabs_;
   RowRoutes<Exec> routes_;
+  Exec* asked_ = nullptr;
+  std::array<const int*, 2> own_{};
   int first_ = 0, last_ = 0, all_ = 0, low_end_ = 0, high_begin_ = 0;  ///< rows
   int particles_ = 0, sorts_done_ = 0;
   bool sorts_ = false, has_exchanged_ = false, overlap_ = false;
-  bool in_batch_ = false, counts_known_ = false, counted_ = false, lost_ = false, agreed_ = true;
+  bool in_batch_ = false, counts_known_ = false, counted_ = false;
+  bool lost_ = false, crowded_ = false, agreed_ = true;
   int losses_ = 0, careful_ = 0;  ///< batches
   SortedRows sorted_;
   std::set<const PassInfo*> beside_exchange_;

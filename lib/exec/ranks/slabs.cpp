@@ -18,6 +18,7 @@ Slabs::Slabs(const std::vector<std::int64_t>& in_layer, int ranks, int unit)
                             units, unit == 1 ? "cells" : "cells that solver.levels keeps together",
                             ranks, units));
   cut(in_layer);
+  most_ = most(in_layer);
 }
 
 /// Each cut where the particles below are nearest to its share, and leaves a unit to every rank.
@@ -49,12 +50,16 @@ std::int64_t Slabs::most(const std::vector<std::int64_t>& in_layer) const {
   return most;
 }
 
-void Slabs::balance(const std::vector<std::int64_t>& in_layer) {
+bool Slabs::balance(const std::vector<std::int64_t>& in_layer) {
   const auto all = std::accumulate(in_layer.begin(), in_layer.end(), std::int64_t(0));
-  if (double(most(in_layer)) <= 1.01 * double(all) / ranks_) return;
+  most_ = most(in_layer);
+  if (double(most_) <= 1.01 * double(all) / ranks_) return false;
   Slabs other = *this;
   other.cut(in_layer);
-  if (other.most(in_layer) < most(in_layer)) *this = other;
+  other.most_ = other.most(in_layer);
+  const bool better = other.most_ < most_;
+  if (better) *this = other;
+  return better;
 }
 
 }  // namespace pbf::exec_module

@@ -138,8 +138,10 @@ TEST_CASE("slabs: particles are shared equally, and every rank has a layer") {
   CHECK(four.owner(19) == 3);
   std::fill(in_layer.begin() + 1, in_layer.end(), 0);  // all in one layer
   Slabs moved = four;
-  moved.balance(in_layer);
-  CHECK(moved == four);  // no cut makes the largest share smaller
+  CHECK_FALSE(moved.balance(in_layer));  // no cut makes the largest share smaller
+  CHECK(moved == four);
+  CHECK_FALSE(moved.crowded(100));  // all are on the first rank, and cannot be elsewhere
+  CHECK(moved.crowded(104));
   const Slabs one(in_layer, 20, 1);
   for (int r = 0; r < 20; ++r) CHECK(one.low(r) == r);
   CHECK_THROWS_WITH(Slabs(in_layer, 21, 1), Catch::Contains("start at most 20 ranks"));

@@ -78,7 +78,8 @@ struct Rank {
     };
     rows.all = counted ? routes.exchange_counted(exec, rows, bin.data(), select)
                        : routes.exchange(exec, rows, bin.data(), select);
-    return !counted || routes.learn(exec.values(routes.counts()));
+    exec.ask(routes.counts());
+    return !counted || routes.learn(exec.answer<5>());
   }
   /// The particles whose bins are in the slab or next to it, each once, with its values; false
   /// otherwise.

@@ -47,10 +47,10 @@ Ran alone(const Made& m, int updates) {
 }
 /// all: what each rank has seen.
 Ran watched(const Made& m, int ranks, int updates, std::vector<RankWatch>& all,
-            const std::string& forget = "") {
+            const std::string& forget = "", bool looks = true) {
   const Scene scene = scene_of_rank(m.plan, m.scene, ranks);
   const Plan plan = plan_of_rank(m.plan, scene);
-  all.assign(std::size_t(ranks), {forget});
+  all.assign(std::size_t(ranks), {.forget = forget, .looks = looks});
   std::mutex mutex;
   Ran ran;
   run_thread_ranks(ranks, [&](Communicator& c) {
@@ -135,6 +135,26 @@ TEST_CASE("ranks that lose rows repeat the updates and give the bits of one", "[
   std::vector<RankWatch> seen;
   CHECK(watched(m, 8, 300, seen) == alone(m, 300));
   for (const RankWatch& w : seen) CHECK(w.repeated > 0);
+}
+
+TEST_CASE("a rank that a jet fills between two regular looks at the cuts is relieved at once") {
+  const Made m(
+      "configs/dam_break_2d",
+      {"fluid.spacing=0.008",
+       R"(bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.008,0.3],"velocity":[12,0,0]}])"});
+  std::vector<RankWatch> seen;
+  CHECK(watched(m, 2, 50, seen) == alone(m, 50));
+  for (const RankWatch& w : seen) {
+    CAPTURE(w.most, m.plan.particles);
+    CHECK(w.most < 1.06 * double(m.plan.particles) / 2);
+  }
+}
+
+TEST_CASE("ranks make lists before the host knows for how many rows, and give the bits of one") {
+  const Made m("configs/dam_break_2d", {"fluid.spacing=0.016"});
+  std::vector<RankWatch> seen;
+  CHECK(watched(m, 3, 50, seen, "", false) == alone(m, 50));
+  for (const RankWatch& w : seen) CHECK(w.early_lists > 50);
 }
 
 TEST_CASE("rows at cuts are launched beside the others, which find NaN in what arrives meanwhile") {
