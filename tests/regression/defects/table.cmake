@@ -28,8 +28,8 @@ seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
 seeded_defect(stale_grid neighbors lib/solver/step_context.h
-  [[exec.build_lists(rows(), capacity(), position(),]]
-  [[exec.build_lists(rows(), capacity(), data(other<field::position>),]])
+  [[exec.build_lists(of, capacity(), position(),]]
+  [[exec.build_lists(of, capacity(), data(other<field::position>),]])
 seeded_defect(last_neighbor_skipped neighbors lib/exec/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
   [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
