@@ -65,7 +65,7 @@ class CpuExec : public CpuRows, protected CpuThreads {
   void forget_recorded() {}
   int largest_batch(int) const { return 1 << 30; }
   static ListDemand list_demand() { return {}; }
-  bool grow_lists(int, std::int64_t = 0) { return false; }
+  bool grow_lists(int, const ListDemand& = {}) { return false; }
 
   /// Copies n elements to an array of this executor.
   template <class T>

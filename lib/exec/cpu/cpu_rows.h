@@ -24,6 +24,7 @@ class CpuRows {
     exchange(out, in);
   }
   void clear(char* at, std::size_t bytes) { std::memset(at, 0, bytes); }
+  void clear_own(char* at, std::size_t bytes) { clear(at, bytes); }
   /// The same for memory of which much may stay unused: it gives pages back to the system, which
   /// are 0 when they are touched.
   void clear_pages(char* at, std::size_t bytes);

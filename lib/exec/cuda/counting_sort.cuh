@@ -12,11 +12,12 @@ namespace pbf::PBF_VARIANT {
 /// the order of arrival within bins.
 class CountingSort {
  public:
-  void begin(const BinSort& s, std::int64_t rows, cudaStream_t stream) {
+  void begin(const BinSort& s, std::int64_t rows, Launcher& launcher) {
     slot_.resize(std::size_t(rows));
     if (counts_.size() == std::size_t(s.all) + 1) return;
     counts_.resize(std::size_t(s.all) + 1);
-    PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream));
+    PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), launcher.ready()));
+    launcher.alone = true;
   }
   template <bool leave, class Pass>
   CountPass<leave, Pass> counting(const BinSort& s, const Pass& pass) {

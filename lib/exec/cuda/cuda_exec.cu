@@ -37,17 +37,18 @@ ListDemand DeviceLists::demand() const {
   return {s.wanted > 0 ? std::max(s.used, s.wanted) : 0, s.longest};
 }
 
-bool DeviceLists::grow(int n, std::int64_t overflows_elsewhere, cudaStream_t stream) {
+bool DeviceLists::grow(int n, const ListDemand& elsewhere, cudaStream_t stream) {
   const ListDemand lacked = demand();
-  if (!lacked.any() && overflows_elsewhere <= capacity_.overflows) return false;
+  if (!lacked.any() && !elsewhere.any()) return false;
+  const bool short_of = lacked.any() || elsewhere.overflows > capacity_.overflows;
+  const std::int64_t used = state_host_.data()->used;
+  clear_state(stream);
+  if (!short_of) return false;
   capacity_ = larger_list_capacity(
-      capacity_,
-      std::max<std::int64_t>({state_host_.data()->used, lacked.overflows, overflows_elsewhere}),
-      int(lacked.longest), n);
+      capacity_, std::max({used, lacked.overflows, elsewhere.overflows}), int(lacked.longest), n);
   words_.resize(0);  // first, because old and new lists may not fit together
   overflows_.resize(0);
   allocate(n);
-  clear_state(stream);
   return true;
 }
 
@@ -201,8 +202,9 @@ ListDemand CudaExec::list_demand() {
   return lists_.demand();
 }
 
-bool CudaExec::grow_lists(int n, std::int64_t overflows_elsewhere) {
-  const bool grown = lists_.grow(n, overflows_elsewhere, launcher_.ready());
+bool CudaExec::grow_lists(int n, const ListDemand& elsewhere) {
+  const bool grown = lists_.grow(n, elsewhere, launcher_.ready());
+  launcher_.alone = true;
   if (grown) forget_recorded();  // it holds the old addresses
   return grown;
 }

@@ -74,11 +74,11 @@ class CudaExec : public CudaSums {
   int largest_batch(int n) const { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
   bool grow_lists(int n) {
     list_demand();
-    return grow_lists(n, 0);
+    return grow_lists(n, {});
   }
   // The same in parts, of which the first waits for the device: see DeviceLists.
   ListDemand list_demand();
-  bool grow_lists(int n, std::int64_t overflows_elsewhere);
+  bool grow_lists(int n, const ListDemand& elsewhere);
 
   CountedRows counted(const RowState* state, int most) const { return {state, most}; }
   static int rows_now(const RowState&) {
@@ -188,7 +188,7 @@ class CudaExec : public CudaSums {
     sort_counted<leave>(sort, first.bin, n, gather);
     return start + bins;
   }
-  void begin_sort(const BinSort& s) { sort_.begin(s, rows_, launcher_.ready()); }
+  void begin_sort(const BinSort& s) { sort_.begin(s, rows_, launcher_); }
   template <bool leave = true, class Pass>
   CountPass<leave, Pass> counting(const BinSort& s, const Pass& pass) {
     return sort_.counting<leave>(s, pass);

@@ -90,6 +90,11 @@ class CudaRows {
     PBF_CUDA_CHECK(cudaMemsetAsync(at, 0, bytes, launcher_.ready()));
     launcher_.alone = true;
   }
+  /// The same for memory that no exchange under way reads or writes, so that nothing waits for it.
+  void clear_own(char* at, std::size_t bytes) {
+    PBF_CUDA_CHECK(cudaMemsetAsync(at, 0, bytes, launcher_.stream));
+    launcher_.alone = true;
+  }
   void copy(const char* from, char* to, std::size_t bytes) {
     if (bytes == 0) return;
     PBF_CUDA_CHECK(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, launcher_.ready()));

@@ -32,8 +32,9 @@ class DeviceLists {
   /// Since the memory last grew.
   ListDemand demand() const;
   /// Whether lists of at most n particles had too little memory, or would have if they needed as
-  /// many overflows as those of another rank; they then have more.
-  bool grow(int n, std::int64_t overflows_elsewhere, cudaStream_t stream);
+  /// many overflows as those of another rank; they then have more. To be made again in any case if
+  /// there was a demand, also elsewhere.
+  bool grow(int n, const ListDemand& elsewhere, cudaStream_t stream);
   void clear_state(cudaStream_t stream) {
     PBF_CUDA_CHECK(cudaMemsetAsync(state_.data(), 0, sizeof(ListState), stream));
   }

@@ -60,6 +60,7 @@ class EdgeStream {
     exchange(stream_);
     if (t) PBF_CUDA_CHECK(cudaEventRecord(t->end, stream_));
     PBF_CUDA_CHECK(cudaEventRecord(exchanged_, stream_));
+    launcher.note_arrival();  // at the exchange before, if nothing has needed that
     launcher.awaited = exchanged_;
     launcher.arrived = t ? t->arrived : nullptr;
   }

@@ -163,7 +163,7 @@ class RankExec : public Base {
       most.overflows = std::max(most.overflows, d.overflows);
       most.longest = std::max(most.longest, d.longest);
     }
-    Base::grow_lists(n, most.overflows);
+    Base::grow_lists(n, most);
     return rows_->forget_lost() || most.any();
   }
   template <class Updates>

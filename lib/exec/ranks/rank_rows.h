@@ -52,7 +52,10 @@ class RankRows {
   Parts parts() { return {{first(), low_end_}, {low_end_, high_begin_}, {high_begin_, last_}}; }
   /// Whether rows at the cuts are worth launches of their own in the pass of the last before(): an
   /// exchange comes next to it, and most rows are not at a cut.
-  bool overlap() { return overlap_ && (last() - first()) / 2 < high_begin_ - low_end_; }
+  bool overlap() {
+    known();
+    return overlap_ && high_begin_ - low_end_ > (last_ - first_) / 2;
+  }
   /// To be called between the launches of a pass that sums over particles.
   void add_within() const { add_within_(); }
 
@@ -84,10 +87,10 @@ class RankRows {
     sorts_done_ = kBalanceEvery - 1;  // the next sort makes new cuts
     forget_near(c);
   }
-  /// Leaves its own rows, moved to the front; false if there were no others.
+  /// Leaves its own rows, moved to the front.
   template <class C>
-  bool drop_ghosts(C& c) {
-    if (first() == 0 && last_ == all_) return false;
+  void drop_ghosts(C& c) {
+    if (first() == 0 && last_ == all_) return;
     const int own = last_ - first_;
     forget_near(c);
     for (const FieldInfo* f : c.plan.program.fields)
@@ -98,7 +101,6 @@ class RankRows {
         }
     only_own(own);
     c.put(field::row_state, {row_state()});
-    return true;
   }
   /// Integers of 64 bits become their sums over all ranks.
   template <class Sums>
@@ -127,7 +129,8 @@ class RankRows {
     sorts_ = !e.rows.empty();
     if (sorts_) {
       ++sorts_done_;
-      if (!lost() && (sorts_done_ % kBalanceEvery == 0 || crowded_)) balance(c);
+      if (!lost() && (sorts_done_ % kBalanceEvery == 0 || crowded_ || slabs_.unfinished()))
+        balance(c);
       sorted_ = {row_fields(c, e.rows, pass), c.capacity(), {first_, last_}, all_};
     }
     for (const FieldInfo* f : e.sums_within) clear_field(c, *f);

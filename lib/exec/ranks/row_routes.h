@@ -50,7 +50,7 @@ class RowRoutes {
     const int ranks = ranks_.size();
     count_.resize(std::size_t(ranks) + 1);
     list_.resize(std::size_t(ranks) * std::size_t(room_));
-    exec.clear(reinterpret_cast<char*>(count_.data()), count_.bytes());
+    exec.clear_own(reinterpret_cast<char*>(count_.data()), count_.bytes());
     return {{owner_.data(), int(slabs.owners().size()), bins, ranks_.rank()},
             list_.data(),
             count_.data(),

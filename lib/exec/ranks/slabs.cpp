@@ -28,7 +28,6 @@ void Slabs::cut(const std::vector<std::int64_t>& in_layer) {
   for (int l = 0; l < layers; ++l) below[std::size_t(l / unit_) + 1] += in_layer[std::size_t(l)];
   std::partial_sum(below.begin(), below.end(), below.begin());
   cut_.assign(1, 0);
-  owner_.assign(std::size_t(layers), 0);
   int at = 0;
   for (int r = 1; r <= ranks_; ++r) {
     const double share = double(below.back()) * r / ranks_;
@@ -36,10 +35,32 @@ void Slabs::cut(const std::vector<std::int64_t>& in_layer) {
     const auto distance = [&](int u) { return std::abs(double(below[std::size_t(u)]) - share); };
     for (at = least; at < most && (r == ranks_ || distance(at + 1) <= distance(at)); ++at) {
     }
-    const int from = cut_.back(), to = std::min(at * unit_, layers);
-    std::fill(owner_.begin() + from, owner_.begin() + to, r - 1);
-    cut_.push_back(to);
+    cut_.push_back(std::min(at * unit_, layers));
   }
+  own();
+}
+
+void Slabs::own() {
+  owner_.assign(std::size_t(cut_.back()), 0);
+  for (int r = 0; r < ranks_; ++r) std::fill(owner_.begin() + low(r), owner_.begin() + high(r), r);
+}
+
+/// Each cut goes towards the other one by units, and stays above the one before.
+void Slabs::approach(const std::vector<int>& cuts, const std::vector<std::int64_t>& in_layer,
+                     std::int64_t most_moved) {
+  for (std::size_t r = 1; r + 1 < cut_.size(); ++r) {
+    int& at = cut_[r];
+    const int to = cuts[r], step = to > at ? unit_ : -unit_;
+    std::int64_t moved = 0;
+    for (bool first = true; at != to; first = false, at += step) {
+      const auto from = in_layer.begin() + std::min(at, at + step);
+      moved += std::accumulate(from, from + unit_, std::int64_t(0));
+      if (!first && moved > most_moved) break;
+    }
+    at = std::max(at, cut_[r - 1] + unit_);
+  }
+  unfinished_ = cut_ != cuts;
+  own();
 }
 
 std::int64_t Slabs::most(const std::vector<std::int64_t>& in_layer) const {
@@ -53,13 +74,14 @@ std::int64_t Slabs::most(const std::vector<std::int64_t>& in_layer) const {
 bool Slabs::balance(const std::vector<std::int64_t>& in_layer) {
   const auto all = std::accumulate(in_layer.begin(), in_layer.end(), std::int64_t(0));
   most_ = most(in_layer);
+  unfinished_ = false;
   if (double(most_) <= 1.01 * double(all) / ranks_) return false;
   Slabs other = *this;
   other.cut(in_layer);
-  other.most_ = other.most(in_layer);
-  const bool better = other.most_ < most_;
-  if (better) *this = other;
-  return better;
+  if (other.most(in_layer) >= most_) return false;
+  approach(std::vector(other.cut_), in_layer, all / (25 * ranks_));
+  most_ = most(in_layer);
+  return true;
 }
 
 }  // namespace pbf::exec_module
