@@ -54,8 +54,8 @@ void all_own_rows(C& c, int n) {
     if (auto* rows = c.exec.rows()) rows->all_own(c, n);
   if (auto* images = c.images()) images->all_own(c, n);
 }
-/// Leaves this rank's own rows alone, without images; false if there were no others. The same on all
-/// ranks, which make lists together. sort(): leaves out rows with a negative id.
+/// Leaves this rank's own rows alone, without images; false if there were no others. The same on
+/// all ranks, which make lists together. sort(): leaves out rows with a negative id.
 template <class C, class Sort>
 bool drop_other_rows(C& c, const Sort& sort) {
   if constexpr (has_ranks<C>)
