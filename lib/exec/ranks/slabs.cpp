@@ -79,7 +79,7 @@ bool Slabs::balance(const std::vector<std::int64_t>& in_layer) {
   Slabs other = *this;
   other.cut(in_layer);
   if (other.most(in_layer) >= most_) return false;
-  approach(std::vector(other.cut_), in_layer, all / (25 * ranks_));
+  approach(other.cut_, in_layer, all / (25 * ranks_));
   most_ = most(in_layer);
   return true;
 }
