@@ -6,6 +6,7 @@
 #include <exception>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "lib/exec/cuda/check.h"
 #include "lib/exec/cuda/nccl.h"
@@ -47,10 +48,13 @@ class NcclLink final : public DeviceLink {
     ranks.broadcast(bytes);
     std::memcpy(&id, bytes.data(), sizeof id);
     check(nccl_.init_rank(&comm_, ranks.size(), id, ranks.rank()), "ncclCommInitRank");
+    ranks.end_waiting[this] = [this] { abort(); };
   }
   ~NcclLink() override {
+    ranks_.end_waiting.erase(this);
     // After an error other ranks may be gone, and an orderly end would wait for them.
-    if (comm_) std::uncaught_exceptions() > 0 ? nccl_.abort(comm_) : nccl_.destroy(comm_);
+    if (std::uncaught_exceptions() > 0) abort();
+    if (comm_) nccl_.destroy(comm_);
   }
   bool in_stream() const override { return true; }
   void wait(cudaStream_t stream) override {
@@ -90,6 +94,9 @@ class NcclLink final : public DeviceLink {
       if (now != cudaErrorNotReady) PBF_CUDA_CHECK(now);
       return now == cudaSuccess;
     });
+  }
+  void abort() {
+    if (comm_) nccl_.abort(std::exchange(comm_, nullptr));
   }
   void check(int result, const char* call) const {
     if (result != 0)

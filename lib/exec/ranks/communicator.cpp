@@ -9,6 +9,11 @@ void Communicator::wait_until(const std::function<bool()>& done) {
   while (!done()) std::this_thread::yield();
 }
 
+void Communicator::fail(const std::string& why, int code) noexcept {
+  tell_failure(why, code);
+  for (const auto& [owner, end] : end_waiting) end();
+}
+
 std::vector<char> scatter(Communicator& ranks, const std::function<std::vector<char>(int)>& part) {
   std::vector<char> bytes;
   std::uint64_t n = 0;

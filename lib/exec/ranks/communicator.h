@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,11 +58,17 @@ class Communicator {
   /// Returns when done() is true, which is asked again and again. done: depends on other ranks, but
   /// not through this object.
   virtual void wait_until(const std::function<bool()>& done);
-  /// Tells the other ranks that this one has failed, so that none waits for it. code: with which
-  /// processes end.
-  virtual void fail(const std::string& why, int code) noexcept = 0;
+  /// Tells the other ranks that this one has failed, so that none waits for it, and ends what waits
+  /// for them. To be called before the memory of a device is freed: that waits for the device, and
+  /// the device may wait for a rank that is gone. code: with which processes end.
+  void fail(const std::string& why, int code) noexcept;
 
   Traffic sent{};
+  /// By owner, what fail() calls to end waiting for other ranks outside of this object.
+  std::map<const void*, std::function<void()>> end_waiting;
+
+ private:
+  virtual void tell_failure(const std::string& why, int code) noexcept = 0;
 };
 
 /// On each rank the bytes part(rank) of rank 0, which makes them one after the other.

@@ -85,14 +85,6 @@ class Mpi final : public MpiRanks {
     check(mpi_.wait_until(ask, &asked), "MPI_Iprobe");
     if (asked.thrown) std::rethrow_exception(asked.thrown);
   }
-  void fail(const std::string& why, int code) noexcept override {
-    failed_ = true;
-    if (rank_ == 0) return;  // tells it and ends the others
-    char host[256] = "";
-    gethostname(host, sizeof host - 1);
-    std::fprintf(stderr, "pbf: error: rank %d on %s: %s\n", rank_, host, why.c_str());
-    mpi_.abort(code);
-  }
   bool failed() const override { return failed_; }
   void end(int code) override {
     if (failed_) mpi_.abort(code);
@@ -100,6 +92,14 @@ class Mpi final : public MpiRanks {
   }
 
  private:
+  void tell_failure(const std::string& why, int code) noexcept override {
+    failed_ = true;
+    if (rank_ == 0) return;  // tells it and ends the others
+    char host[256] = "";
+    gethostname(host, sizeof host - 1);
+    std::fprintf(stderr, "pbf: error: rank %d on %s: %s\n", rank_, host, why.c_str());
+    mpi_.abort(code);
+  }
   void count(const std::vector<pbf_mpi_message>& out) {
     sent.messages += std::int64_t(out.size());
     for (const pbf_mpi_message& m : out) sent.bytes += std::int64_t(m.bytes);

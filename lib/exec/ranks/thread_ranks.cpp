@@ -101,9 +101,9 @@ class ThreadRank final : public Communicator {
     else
       bytes = exchange_.take(0, rank_);
   }
-  void fail(const std::string& why, int) noexcept override { exchange_.fail(why); }
 
  private:
+  void tell_failure(const std::string& why, int) noexcept override { exchange_.fail(why); }
   static std::vector<char> bytes_of(const void* data, std::size_t bytes) {
     const char* at = static_cast<const char*>(data);
     return {at, at + bytes};
