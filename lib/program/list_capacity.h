@@ -12,6 +12,9 @@ struct ListCapacity {
   int overflow = 0;   ///< words of one overflow block
   int overflows = 0;  ///< overflow blocks in the pool
   constexpr int longest() const { return 4 * (first + overflow); }
+  /// Lists longer than this, or more overflows, need more memory soon.
+  constexpr int nearly_longest() const { return longest() - longest() / 16; }
+  constexpr int nearly_overflows() const { return overflows - overflows / 8; }
 };
 
 /// What lists on the device lacked.
@@ -30,8 +33,8 @@ inline ListCapacity first_list_capacity(double rest_neighbors, std::int64_t n,
 }
 
 /// A larger capacity with some reserve, after `overflows` lists outgrew their first words and the
-/// longest one has `longest` entries (0: none is too long). If many lists overflow, all become
-/// longer. Otherwise there are more overflow blocks, and longer ones if needed. Their number
+/// longest one has `longest` entries (0: none is too long, or nearly). If many lists overflow, all
+/// become longer. Otherwise there are more overflow blocks, and longer ones if needed. Their number
 /// follows `overflows`, because one very long list (a dense clump) determines the length of every
 /// block.
 inline ListCapacity larger_list_capacity(ListCapacity capacity, std::int64_t overflows, int longest,
@@ -40,8 +43,9 @@ inline ListCapacity larger_list_capacity(ListCapacity capacity, std::int64_t ove
     capacity.first += (capacity.first + 1) / 2;
     return capacity;
   }
-  if (longest > capacity.longest())
-    capacity.overflow = (longest + longest / 8) / 4 + 1 - capacity.first;
+  if (longest > 0)
+    capacity.overflow =
+        std::max(capacity.overflow, (longest + longest / 8) / 4 + 1 - capacity.first);
   capacity.overflows = int(std::min<std::int64_t>(overflows + overflows / 4 + 32, 2147483647));
   return capacity;
 }

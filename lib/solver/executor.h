@@ -149,8 +149,10 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   e.repeat(1, updates);
   e.forget_recorded();
   { e.largest_batch(1) } -> std::convertible_to<int>;
-  // Enlarges the memory of lists if some did not fit; false if all did.
+  // Enlarges the memory of lists if some did not fit; false if all did. After that, if they are no
+  // longer needed: more memory if they were nearly too long.
   { e.grow_lists(1) } -> std::same_as<bool>;
+  e.enlarge_lists(1);
   { c.bytes() } -> std::convertible_to<std::size_t>;
   c.describe(info);  // device, driver, threads, launches
 };

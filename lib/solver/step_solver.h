@@ -197,8 +197,8 @@ class StepSolver final : public Solver, public Inspection {
   }
   /// The number of a step of the present length. done: steps since the last counted update.
   std::int64_t at(std::int64_t done) const { return (updates_ << options_.level) + done; }
-  /// Runs `work`. While a list did not fit, restores the state before it, enlarges the lists, calls
-  /// again() and repeats `work`.
+  /// Runs `work`, after which lists are no longer current. While a list did not fit, restores the
+  /// state before it, enlarges the lists, calls again() and repeats `work`.
   template <class Work, class Again>
   void until_lists_fit(const Work& work, const Again& again) {
     if constexpr (Exec::lists_overflow) stepper_->save(saved_);
@@ -208,6 +208,7 @@ class StepSolver final : public Solver, public Inspection {
       again();
       work();
     }
+    if constexpr (Exec::lists_overflow) exec_.enlarge_lists(stepper_->capacity());
   }
 
   /// done: steps since the last counted update.

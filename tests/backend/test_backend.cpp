@@ -154,6 +154,19 @@ TEST_CASE("few particles are sorted in a box of however many bins") {
   CHECK(from_cpu(c, 3).worst < (is_double() ? 1e-11 : 1e-4));
 }
 
+TEST_CASE("more particles are sorted in a box of however many bins") {
+  // A device adds up the counts of up to 4096 bins for each of its processors in one launch: one
+  // tile and the number behind it, several, and more than there are processors (132 of an H100).
+  const int cells = GENERATE(16, 100, 2100, 2120);
+  CAPTURE(cells);
+  Case c = here(jittered_block(15, 15, 14, 0.3, 0.4));
+  const double h = c.scene.h(), edge[3] = {(cells - 0.5) / 2 * h, 7.5 * h, 7.5 * h};
+  for (std::size_t k = 0; k < 3; ++k) c.scene.domain.max[k] = c.scene.domain.min[k] + edge[k];
+  const pbf::Plan plan = pbf::make_plan(c.scene, 3150);
+  REQUIRE(plan.cells[0] * plan.cells[1] * plan.cells[2] * 4 == 256 * cells);
+  CHECK(from_cpu(c, 3).worst < (is_double() ? 1e-11 : 1e-4));
+}
+
 TEST_CASE("5 updates follow the CPU at every size that shares its sums among fewer threads",
           "[slow]") {
   // A device shares neighbor sums among 8, 4, 2 and 1 threads at these edges of a cube (10648 to

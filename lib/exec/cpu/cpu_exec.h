@@ -66,6 +66,7 @@ class CpuExec : public CpuRows, protected CpuThreads {
   int largest_batch(int) const { return 1 << 30; }
   static ListDemand list_demand() { return {}; }
   bool grow_lists(int, const ListDemand& = {}) { return false; }
+  void enlarge_lists(int) {}
 
   /// Copies n elements to an array of this executor.
   template <class T>

@@ -34,7 +34,8 @@ void DeviceLists::ask_state(cudaStream_t stream) {
 
 ListDemand DeviceLists::demand() const {
   const ListState& s = *state_host_.data();
-  return {s.wanted > 0 ? std::max(s.used, s.wanted) : 0, s.longest};
+  return {s.wanted > 0 ? std::max(s.used, s.wanted) : 0,
+          s.longest > capacity_.longest() ? s.longest : 0};
 }
 
 bool DeviceLists::grow(int n, const ListDemand& elsewhere, cudaStream_t stream) {
@@ -44,12 +45,25 @@ bool DeviceLists::grow(int n, const ListDemand& elsewhere, cudaStream_t stream) 
   const std::int64_t used = state_host_.data()->used;
   clear_state(stream);
   if (!short_of) return false;
-  capacity_ = larger_list_capacity(
-      capacity_, std::max({used, lacked.overflows, elsewhere.overflows}), int(lacked.longest), n);
+  use(larger_list_capacity(capacity_, std::max({used, lacked.overflows, elsewhere.overflows}),
+                           int(lacked.longest), n),
+      n);
+  return true;
+}
+
+bool DeviceLists::enlarge(int n, cudaStream_t stream) {
+  const ListState& s = *state_host_.data();
+  if (s.longest == 0 && s.used <= capacity_.nearly_overflows()) return false;
+  clear_state(stream);
+  use(larger_list_capacity(capacity_, s.used, s.longest, n), n);
+  return true;
+}
+
+void DeviceLists::use(const ListCapacity& capacity, int n) {
+  capacity_ = capacity;
   words_.resize(0);  // first, because old and new lists may not fit together
   overflows_.resize(0);
   allocate(n);
-  return true;
 }
 
 CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
@@ -60,6 +74,7 @@ CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
   PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
   PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
   launcher_.overlap = p.major >= 9;
+  sort_.use_blocks(p.multiProcessorCount);
   device_ = p.name;
   driver_ = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
   PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&launcher_.stream, cudaStreamNonBlocking));
@@ -101,11 +116,9 @@ void CudaExec::book(double scale) {
   stages_.clear();
 }
 
-void CountingSort::scan(const BinRange& bins, int* start, cudaStream_t stream) {
-  // The count behind the last bin is 0, so the scan ends with the number of rows.
+void CountingSort::scan(const int* from, int n, int* to, cudaStream_t stream) {
   with_scratch(scan_, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data() + bins.begin,
-                                         start + bins.begin, bins.end - bins.begin + 1, stream);
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, from, to, n, stream);
   });
 }
 
@@ -207,6 +220,12 @@ bool CudaExec::grow_lists(int n, const ListDemand& elsewhere) {
   launcher_.alone = true;
   if (grown) forget_recorded();  // it holds the old addresses
   return grown;
+}
+
+void CudaExec::enlarge_lists(int n) {
+  if (!lists_.enlarge(n, launcher_.ready())) return;
+  launcher_.alone = true;
+  forget_recorded();  // it holds the old addresses
 }
 
 double CudaExec::hidden_exchange() const {

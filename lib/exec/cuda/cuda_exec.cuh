@@ -79,6 +79,9 @@ class CudaExec : public CudaSums {
   // The same in parts, of which the first waits for the device: see DeviceLists.
   ListDemand list_demand();
   bool grow_lists(int n, const ListDemand& elsewhere);
+  /// After grow_lists() was false: more memory for lists that are nearly too long, so that updates
+  /// to come need not be repeated. Present lists are lost.
+  void enlarge_lists(int n);
 
   CountedRows counted(const RowState* state, int most) const { return {state, most}; }
   static int rows_now(const RowState&) {

@@ -35,6 +35,9 @@ class DeviceLists {
   /// many overflows as those of another rank; they then have more. To be made again in any case if
   /// there was a demand, also elsewhere.
   bool grow(int n, const ListDemand& elsewhere, cudaStream_t stream);
+  /// After grow() was false: more memory if little is left, so that later lists fit. The lists are
+  /// to be made again.
+  bool enlarge(int n, cudaStream_t stream);
   void clear_state(cudaStream_t stream) {
     PBF_CUDA_CHECK(cudaMemsetAsync(state_.data(), 0, sizeof(ListState), stream));
   }
@@ -64,6 +67,7 @@ class DeviceLists {
       launcher.start(item_kernel<Rows, ListPass<Real, D>>, most(n), kBlock, 0, n, pass);
   }
   void allocate(int n);
+  void use(const ListCapacity& capacity, int n);
 
   ListCapacity capacity_;
   DeviceBuffer<int4> words_, overflows_;

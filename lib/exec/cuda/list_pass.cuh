@@ -21,7 +21,7 @@ __device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
 struct ListState {
   int used;     ///< overflows taken in this update
   int wanted;   ///< overflows asked for in any update that had too few
-  int longest;  ///< longest list that did not fit, in any update
+  int longest;  ///< longest list that did not fit, or nearly not, in any update
 };
 
 /// D: dimensions of the scene.
@@ -177,7 +177,7 @@ struct ListPass {
   /// limit: words that fit.
   __device__ __forceinline__ void finish(int i, int all, int limit) const {
     count[i] = min(all, 4 * limit);
-    if (all > capacity.longest()) atomicMax(&state->longest, all);
+    if (all > capacity.nearly_longest()) atomicMax(&state->longest, all);
   }
 };
 
