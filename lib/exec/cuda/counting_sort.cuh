@@ -1,11 +1,9 @@
 // The counting sort by bin on a device.
 #pragma once
 
-#include <algorithm>
 #include <cub/device/device_scan.cuh>
 
 #include "lib/exec/cuda/device_buffer.h"
-#include "lib/exec/cuda/scan_kernel.cuh"
 #include "lib/exec/cuda/sort_kernels.cuh"
 
 namespace pbf::PBF_VARIANT {
@@ -14,14 +12,11 @@ namespace pbf::PBF_VARIANT {
 /// the order of arrival within bins.
 class CountingSort {
  public:
-  /// blocks: that the device runs at once.
-  void use_blocks(int blocks) { tiles_.resize(std::size_t(blocks)); }
   void begin(const BinSort& s, std::int64_t rows, Launcher& launcher) {
     slot_.resize(std::size_t(rows));
     if (counts_.size() == std::size_t(s.all) + 1) return;
     counts_.resize(std::size_t(s.all) + 1);
     PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), launcher.ready()));
-    PBF_CUDA_CHECK(cudaMemsetAsync(tiles_.data(), 0, tiles_.bytes(), launcher.stream));
     launcher.alone = true;
   }
   template <bool leave, class Pass>
@@ -32,19 +27,9 @@ class CountingSort {
   template <class Rows>
   void place(Launcher& launcher, const BinSort& s, const int* bin, const Rows& n,
              ListState* lists) {
-    // The count behind the last bin is 0, so the scan ends with the number of rows.
-    const int counts = s.bins.end - s.bins.begin + 1, tiles = (counts + kScanTile - 1) / kScanTile;
-    const bool at_once = std::size_t(tiles) <= tiles_.size();
-    const int* from = counts_.data() + s.bins.begin;
-    if (at_once)
-      launcher.start(scan_kernel<kScanBlock>, tiles * kScanBlock, kScanBlock, 0, from, counts,
-                     s.start + s.bins.begin, tiles_.data());
-    else
-      scan(from, counts, s.start + s.bins.begin, launcher.ready());
-    // Without rows, too: what the scan leaves is cleared.
-    launcher.start(place_kernel<Rows>, std::max(most(n), 1), kBlock, 0, n,
-                   PlacePass{s.bins, bin, s.start, s.order, slot_.data()},
-                   NextSort{counts_.data(), tiles_.data(), at_once ? tiles : 0, lists});
+    scan(s.bins, s.start, launcher.ready());
+    launcher.start(place_kernel<Rows>, most(n), kBlock, 0, n,
+                   PlacePass{s.bins, bin, s.start, s.order, slot_.data()}, counts_.data(), lists);
   }
   /// All of a sort whose passes before this one have given rows their bins, or whose `first` does.
   template <bool leave, class Rows, class First, class Gather>
@@ -59,16 +44,13 @@ class CountingSort {
   OrderPass<leave, Gather> in_order(const BinSort& s, const int* bin, const Gather& gather) {
     return {s.bins, bin, s.id, s.start, slot_.data(), gather};
   }
-  std::size_t bytes() const {
-    return counts_.bytes() + slot_.bytes() + tiles_.bytes() + scan_.bytes();
-  }
+  std::size_t bytes() const { return counts_.bytes() + slot_.bytes() + scan_.bytes(); }
 
  private:
-  /// to[k] = from[0] + ... + from[k - 1], k < n.
-  void scan(const int* from, int n, int* to, cudaStream_t stream);
+  /// Exclusive sums of the counts.
+  void scan(const BinRange& bins, int* start, cudaStream_t stream);
 
   DeviceBuffer<int> counts_, slot_;
-  DeviceBuffer<ScanTile> tiles_;
   DeviceBuffer<char> scan_;  ///< separate, because recorded updates hold its address
 };
 

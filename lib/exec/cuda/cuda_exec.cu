@@ -74,7 +74,6 @@ CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
   PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
   PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
   launcher_.overlap = p.major >= 9;
-  sort_.use_blocks(p.multiProcessorCount);
   device_ = p.name;
   driver_ = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
   PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&launcher_.stream, cudaStreamNonBlocking));
@@ -116,9 +115,11 @@ void CudaExec::book(double scale) {
   stages_.clear();
 }
 
-void CountingSort::scan(const int* from, int n, int* to, cudaStream_t stream) {
+void CountingSort::scan(const BinRange& bins, int* start, cudaStream_t stream) {
+  // The count behind the last bin is 0, so the scan ends with the number of rows.
   with_scratch(scan_, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, from, to, n, stream);
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data() + bins.begin,
+                                         start + bins.begin, bins.end - bins.begin + 1, stream);
   });
 }
 

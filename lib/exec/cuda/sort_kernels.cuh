@@ -4,27 +4,19 @@
 #include "kernels/pass_sort.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
-#include "lib/exec/cuda/scan_kernel.cuh"
 
 namespace pbf::PBF_VARIANT {
 
-/// What the next sort needs cleared: the counts, the tiles of their scan, and the number of used
-/// overflows.
-struct NextSort {
-  int* count;
-  ScanTile* tile;
-  int tiles;
-  ListState* lists;
-};
+/// Also clears the counts for the next sort, and the number of used overflows.
 template <class Rows>
-__global__ void __launch_bounds__(kBlock) place_kernel(Rows rows, PlacePass pass, NextSort next) {
+__global__ void __launch_bounds__(kBlock)
+    place_kernel(Rows rows, PlacePass pass, int* count, ListState* lists) {
   const int n = end_of(rows);
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
-  for (int b = pass.bins.begin + i; b < pass.bins.end; b += gridDim.x * kBlock) next.count[b] = 0;
-  for (int t = i; t < next.tiles; t += gridDim.x * kBlock) next.tile[t] = 0;
-  if (i == 0) next.lists->used = 0;
+  for (int b = pass.bins.begin + i; b < pass.bins.end; b += gridDim.x * kBlock) count[b] = 0;
+  if (i == 0) lists->used = 0;
 }
 
 static_assert((kSortBins + 1 + 32) * sizeof(int) <= 48 * 1024, "count and warp_sum in one block");
