@@ -65,9 +65,7 @@ bool opens_in_h5py(const fs::path& file, std::int64_t frames) {
 /// killed while it connects, although all have ended: then mpirun is killed. A rank that is left is
 /// a hang.
 bool ends(const Process& mpirun, const Scratch& folder) {
-  for (int i = 0; i < 3000 && mpirun.running(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  if (!mpirun.running()) return true;
+  if (comes_true([&] { return !mpirun.running(); }, 30)) return true;
   for (int rank = 0; rank < 4; ++rank) {
     CAPTURE(rank);
     CHECK(process_of_rank(rank, folder) == -1);

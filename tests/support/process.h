@@ -42,12 +42,17 @@ class Process {
   std::filesystem::path out_, err_;
 };
 
-/// Waits until `there` holds; a minute is a hang. The test goes on, to end what it has started.
+/// Waits until `there` holds, at most so many seconds; whether it does.
+template <class Condition>
+bool comes_true(Condition there, int most) {
+  for (int i = 0; i < 100 * most && !there(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return there();
+}
+/// The same for what must come; a minute is a hang. The test goes on, to end what it has started.
 template <class Condition>
 void wait_until(Condition there) {
-  for (int i = 0; i < 6000 && !there(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  CHECK(there());
+  CHECK(comes_true(there, 60));
 }
 
 using Args = std::vector<std::string>;
