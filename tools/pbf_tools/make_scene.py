@@ -7,6 +7,8 @@ has those scenes in their own formulation, with too many particles at random pos
 image turns the dark pixels of a picture into fluid; the picture stands upright in x and z. mesh
 fills a closed surface (.stl, .ply, .obj, .vtp; needs PyVista). Both write the particles to
 NAME_particles.h5 beside the scene.
+ramps writes a folder of random scenes for learning, in which a block or a ball of water falls on
+turned plates. Sample k of a seed is the same for every --number.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import ramps
 from .errors import BadInput, FileError
 from .fill import fill_image, fill_mesh
 from .table import write_text
@@ -25,8 +28,9 @@ EXAMPLE = """examples:
   python -m pbf_tools make-scene blob --count 16384 -o blob.yaml
   python -m pbf_tools make-scene block --count 50000 --size 0.4,0.4,0.8 --box 1.6,0.4,1 -o dam.yaml
   python -m pbf_tools make-scene image --file logo.png --width 1 --spacing 0.01 -o logo.yaml
-  python -m pbf_tools make-scene mesh --file bunny.stl --width 0.5 --spacing 0.01 -o bunny.yaml"""
-SHAPES = ("blob", "stream", "block", "image", "mesh")
+  python -m pbf_tools make-scene mesh --file bunny.stl --width 0.5 --spacing 0.01 -o bunny.yaml
+  python -m pbf_tools make-scene ramps --seed 1 --number 1000 --particles 2000 -o ramps"""
+SHAPES = ("blob", "stream", "block", "image", "mesh", "ramps")
 
 
 def numbers(text: str) -> list[float]:
@@ -39,7 +43,8 @@ def numbers(text: str) -> list[float]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shape", choices=SHAPES)
-    parser.add_argument("-o", "--out", required=True, metavar="SCENE", help="scene file to write")
+    parser.add_argument("-o", "--out", required=True, metavar="SCENE",
+                        help="scene file to write; of ramps a folder")
     parser.add_argument("--count", type=int, metavar="N", help="particles (blob, stream, "
                         "block; default 16384); the top layer may be incomplete")
     parser.add_argument("--size", type=numbers, default=[0.4, 0.4, 0.8], metavar="X,Y,Z",
@@ -60,6 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="particle spacing, m (image, mesh)")
     parser.add_argument("--end", type=float, default=2, metavar="S",
                         help="simulated time, s (default 2)")
+    ramps.add_arguments(parser)
 
 
 def scene_text(name: str, box: tuple[list[float], list[float]], spacing: float, body: str,
@@ -84,6 +90,8 @@ def scene_text(name: str, box: tuple[list[float], list[float]], spacing: float, 
 
 def run(args: argparse.Namespace) -> int:
     out = Path(args.out)
+    if args.shape == "ramps":
+        return ramps.run(args)
     if not args.end > 0:
         raise BadInput("--end must be above 0")
     if args.shape in ("image", "mesh"):
