@@ -91,7 +91,12 @@ def scene_text(name: str, box: tuple[list[float], list[float]], spacing: float, 
 def run(args: argparse.Namespace) -> int:
     out = Path(args.out)
     if args.shape == "ramps":
+        if args.count is not None:
+            raise BadInput("--count is of blob, stream and block; give ramps --particles")
         return ramps.run(args)
+    for name in ramps.OPTIONS:
+        if getattr(args, name) is not None:
+            raise BadInput(f"--{name} is of ramps, and {args.shape} does not take it")
     if not args.end > 0:
         raise BadInput("--end must be above 0")
     if args.shape in ("image", "mesh"):

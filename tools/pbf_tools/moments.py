@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+ROUNDING = 3e-7  # of an acceleration, relative to positions in float
+
 
 class Moments:
     """As LagrangeBench defines them: differences of positions from frame to frame, and of these,
@@ -15,7 +17,7 @@ class Moments:
     >>> moments = Moments(np.array([np.inf]))
     >>> moments.add(np.array([[[0.0]], [[1.0]], [[3.0]]]))
     >>> moments.end()
-    >>> moments.values(np.ones(1))
+    >>> moments.values(3.0)
     {'vel_mean': [1.5], 'vel_std': [0.5], 'acc_mean': [1.0], 'acc_std': [1.0]}
     """
 
@@ -42,17 +44,17 @@ class Moments:
             self._sums[kind] = [0, np.zeros_like(total), np.zeros_like(total)]
         self._tail = self._tail[:0]
 
-    def values(self, size: np.ndarray) -> dict[str, list[float]]:
+    def values(self, largest: float) -> dict[str, list[float]]:
         """vel_mean, vel_std, acc_mean, acc_std, each (D,). A deviation below the rounding of
-        positions in a box of this size (D,), m, is that of an axis without motion: it is 1, so that
-        it can be divided by."""
+        coordinates of this size, m, in float is that of an axis without motion: it is 1, so that it
+        can be divided by."""
         out: dict[str, list[float]] = {}
         for kind, parts in self._means.items():
-            mean = np.mean([m for m, _ in parts], axis=0) if parts else np.zeros(len(size))
-            squares = np.mean([s for _, s in parts], axis=0) if parts else np.zeros(len(size))
+            mean = np.mean([m for m, _ in parts], axis=0) if parts else np.zeros(len(self._box))
+            squares = np.mean([s for _, s in parts], axis=0) if parts else np.zeros(len(self._box))
             std = np.sqrt(np.maximum(squares - mean**2, 0))
             out[f"{kind}_mean"] = mean.tolist()
-            out[f"{kind}_std"] = np.where(std < 1e-7 * size, 1.0, std).tolist()
+            out[f"{kind}_std"] = np.where(std <= ROUNDING * largest, 1.0, std).tolist()
         return out
 
     def _way(self, x: np.ndarray) -> np.ndarray:

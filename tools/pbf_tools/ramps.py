@@ -23,6 +23,7 @@ FEWEST = {2: 200, 3: 1000}
 MOST_SCENES = 100000  # names have five digits
 GAP = 3.0  # spacings between plates, and to the walls: water flows through without clogging
 TRIES = 200
+OPTIONS = ("seed", "number", "dimensions", "particles", "frames", "every")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -250,8 +251,8 @@ class Draw:
 
 
 def run(args: argparse.Namespace) -> int:
-    given = {name: getattr(args, name) for name in ("seed", "dimensions", "particles", "frames",
-                                                    "every") if getattr(args, name) is not None}
+    given = {name: getattr(args, name) for name in OPTIONS
+             if name != "number" and getattr(args, name) is not None}
     number = 10 if args.number is None else args.number
     settings = _checked(Settings(**given), number)
     folder = Path(args.out)
@@ -264,7 +265,8 @@ def run(args: argparse.Namespace) -> int:
         texts[folder / f"{name}.yaml"] = Draw(settings, k).text(name, head)
     _refuse_others(folder, texts)
     for path, text in texts.items():
-        write_text(path, text, parents=True)
+        if not path.exists():  # else it is the same
+            write_text(path, text, parents=True)
     print(f"wrote {number} scenes in {folder}: spacing {settings.spacing:g} m, {settings.frames} "
           f"frames, {settings.interval:g} s apart; try: pbf batch {folder}")
     return 0

@@ -43,7 +43,7 @@ def solid_of(obstacle: Mapping[str, Any], spacing: float, flat: bool, low: np.nd
                        "turn_axis", "turn_angle")}
     if shape == "box":
         middle = (keys["min"] + keys["max"]) / 2
-        turn = turn_about(keys["turn_axis"], float(keys["turn_angle"]))
+        turn = turn_about(keys.get("turn_axis", np.array([0, 0, 1])), float(keys.get("turn_angle", 0)))
         points = middle + box_shell(keys["max"] - keys["min"], spacing, flat) @ turn.T
     elif shape == "sphere" or shape == "cylinder" and flat:
         middle = keys["center"] if shape == "sphere" else (keys["from"] + keys["to"]) / 2

@@ -212,5 +212,5 @@ def metadata(parts: list[list[Trajectory]], place: Place, moments: Moments,
             "num_particles_max": max(len(t.types) for t in data),
             "periodic_boundary_conditions": first.periodic.tolist(),
             "bounds": place.bounds.tolist(), "default_connectivity_radius": place.radius,
-            **moments.values(place.bounds[:, 1] - place.bounds[:, 0]),
+            **moments.values(float(np.abs([place.low, place.high, *place.bounds.T]).max())),
             "description": f"Made by pbf_tools of runs of pbf, of which the first is {data[0].name}."}

@@ -102,33 +102,19 @@ class Trajectory:
         if len(numbers) < 2:
             raise BadInput(f"{run.path}: a trajectory needs at least 2 frames, here is 1")
         scene = scene_of(run)
-        flat = scene["dimensions"] == "2"
-        axes = [0, 2] if flat else [0, 1, 2]
-        low, high = (np.asarray(run.info[f"domain_{end}"], float) for end in ("min", "max"))
-        joined = scene["domain"]["periodic"]
-        try:
-            found = [solid_of(o, float(run.info["spacing"]), flat, low, high)
-                     for o in scene["obstacles"]] if solids else []
-        except BadInput as problem:
-            raise BadInput(f"{run.path}: {problem}") from None
-        if wall_particles:
-            open_faces = scene["domain"]["open"]
-            walled = np.array([[a not in joined and f"{a}_{end}" not in open_faces
-                                for end in ("min", "max")] for a in "xyz"])
-            points = walls(low, high, float(run.info["spacing"]), walled, flat)
-            found.append(Solid("walls", False, (low + high) / 2, points))
         ids = _ids(run, numbers)
         times, updates = run.times[numbers], np.diff(run.updates[numbers])
-        interval = (times[-1] - times[0]) / (len(times) - 1)
-        _require_equal_times(run, numbers, times, interval)
+        _require_equal_times(run, numbers, times)
+        found = _solids(run, scene, solids, wall_particles)
         types = [np.full(len(ids), FLUID)]
         types += [np.full(len(s.points), MOVING if s.moves else FIXED) for s in found]
-        number = sum(map(len, types))
-        return cls(run, _name(run), numbers, times, interval,
+        others = sum(map(len, types)) - len(ids)
+        axes = [0, 2] if _flat(scene) else [0, 1, 2]
+        low, high = _domain(run)
+        return cls(run, _name(run), numbers, times, (times[-1] - times[0]) / (len(times) - 1),
                    int(updates[0]) if np.all(updates == updates[0]) else 0, axes, low[axes],
-                   high[axes], np.array(["xyz"[a] in joined for a in axes]),
-                   float(run.info["spacing"]),
-                   np.concatenate([ids, np.full(number - len(ids), NO_ID)]),
+                   high[axes], np.array(["xyz"[a] in _periodic(scene) for a in axes]),
+                   float(run.info["spacing"]), np.concatenate([ids, np.full(others, NO_ID)]),
                    np.concatenate(types), len(ids), found)
 
     def blocks(self) -> Iterator[np.ndarray]:
@@ -176,6 +162,35 @@ def scene_of(run: Run) -> dict[str, Any]:
     return yaml.load(run.scene, Loader=yaml.BaseLoader)
 
 
+# Files of older versions lack some keys.
+def _flat(scene: dict[str, Any]) -> bool:
+    return scene.get("dimensions") == "2"
+
+
+def _periodic(scene: dict[str, Any]) -> list[str]:
+    return scene["domain"].get("periodic", [])
+
+
+def _domain(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    return np.asarray(run.info["domain_min"], float), np.asarray(run.info["domain_max"], float)
+
+
+def _solids(run: Run, scene: dict[str, Any], obstacles: bool, wall_particles: bool) -> list[Solid]:
+    spacing, (low, high) = float(run.info["spacing"]), _domain(run)
+    try:
+        found = [solid_of(o, spacing, _flat(scene), low, high) for o in scene.get("obstacles", [])] \
+            if obstacles else []
+    except BadInput as problem:
+        raise BadInput(f"{run.path}: {problem}") from None
+    if wall_particles:
+        missing = _periodic(scene), scene["domain"].get("open", [])
+        walled = np.array([[a not in missing[0] and f"{a}_{end}" not in missing[1]
+                            for end in ("min", "max")] for a in "xyz"])
+        points = walls(low, high, spacing, walled, _flat(scene))
+        found.append(Solid("walls", False, (low + high) / 2, points))
+    return found
+
+
 def _name(run: Run) -> str:
     """Of the run in a data set: its folder or, of a copy, its file."""
     folder = folder_of_run(run.path.absolute())
@@ -207,13 +222,12 @@ def _ids(run: Run, numbers: list[int]) -> np.ndarray:
     return first
 
 
-def _require_equal_times(run: Run, numbers: list[int], times: np.ndarray, interval: float) -> None:
-    off = np.abs(np.diff(times) - interval) > 1e-6 * interval
+def _require_equal_times(run: Run, numbers: list[int], times: np.ndarray) -> None:
+    steps = np.diff(times)
+    usual = float(np.median(steps))
+    off = np.abs(steps - usual) > 1e-6 * usual
     if off.any():
-        # Of the usual interval, the first that differs from it.
-        steps = np.diff(times)
-        usual = float(np.median(steps))
-        k = int(np.argmax(np.abs(steps - usual) > 1e-6 * usual))
+        k = int(np.argmax(off))
         raise BadInput(f"{run.path}: frame {numbers[k + 1]} is {steps[k]:.6g} s after the one "
                        f"before, others {usual:.6g} s: a trajectory has equal steps; choose frames "
                        "with --frames, 0:-1 say")
