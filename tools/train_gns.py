@@ -66,8 +66,8 @@ def main() -> int:
     metadata = json.loads((Path(args.data) / "metadata.json").read_text())
     train = H5Dataset("train", args.data, name="ramps", input_seq_length=PAST)
     steps = len(train) if args.steps is None else args.steps
-    # A tenth of the usual motion from frame to frame: the network learns to correct its own errors.
-    noise = 0.1 * math.sqrt(np.mean(np.square(metadata["vel_std"])))
+    # A few percent of the usual motion: the network learns to correct its own errors.
+    noise = 0.03 * math.sqrt(np.mean(np.square(metadata["vel_std"])))
     settings = {
         "mode": "train", "dtype": "float32", "dataset": {"src": args.data, "name": "ramps"},
         "model": {"name": "gns", "input_seq_length": PAST, "num_mp_steps": args.blocks,
@@ -76,7 +76,7 @@ def main() -> int:
                   "optimizer": {"lr_start": args.rate, "lr_decay_steps": steps},
                   "pushforward": {"steps": [-1], "unrolls": [0], "probs": [1]}},
         "eval": {"n_rollout_steps": ROLLOUT, "train": {"n_trajs": 1}},
-        "logging": {"log_steps": 1, "eval_steps": max(1, steps - 1), "ckp_dir": args.out,
+        "logging": {"log_steps": 1, "eval_steps": max(1, (steps - 1) // 4), "ckp_dir": args.out,
                     "run_name": "gns"},
         # The number of particles differs from run to run: this search takes lists that are padded.
         "neighbors": {"backend": "matscipy"}}

@@ -68,8 +68,12 @@ class Field:
         if len(counts) and np.any(counts != counts[0]):
             raise BadInput(f"{self._run.path}: the number of particles varies over these frames; "
                            f"read them one by one, or one particle with run.track(id)")
-        parts = self._run._read(lambda file: [self._frame(file, k, rows) for k in frames],
-                                f"cannot read {self.name}")
+
+        def read(file: h5py.File) -> list[np.ndarray]:
+            data = file[self._place.path]
+            return [self._frame(data, k, rows) for k in frames]
+
+        parts = self._run._read(read, f"cannot read {self.name}")
         if not many:
             out = parts[0]
         elif parts:
@@ -80,8 +84,7 @@ class Field:
             out = np.empty((0, particles, *tail), self.dtype)[:, rows]
         return out[(..., *keys[2:])] if len(keys) > 2 else out
 
-    def _frame(self, file: h5py.File, k: int, rows: object) -> np.ndarray:
-        data = file[self._place.path]
+    def _frame(self, data: h5py.Dataset, k: int, rows: object) -> np.ndarray:
         first, n = int(self._place.offsets[k]), int(self._run.counts[k])
         if first < 0 or first + n > len(data):
             raise ValueError(f"{self.name} ends before frame {k} does")
