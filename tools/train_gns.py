@@ -26,7 +26,7 @@ parser.add_argument("data", help="folder of the data set")
 parser.add_argument("--steps", type=int, help="gradient steps (default: one epoch)")
 parser.add_argument("--out", default="gns", help="folder of checkpoints (default %(default)s)")
 parser.add_argument("--blocks", type=int, default=3, help="of message passing (default %(default)s)")
-parser.add_argument("--latent", type=int, default=32, help="size of a layer (default %(default)s)")
+parser.add_argument("--latent", type=int, default=64, help="size of a layer (default %(default)s)")
 parser.add_argument("--rate", type=float, default=1e-3, help="learning rate (default %(default)s)")
 PAST = 6  # positions that the network sees
 ROLLOUT = 20  # frames that it must predict in the validation
@@ -66,8 +66,8 @@ def main() -> int:
     metadata = json.loads((Path(args.data) / "metadata.json").read_text())
     train = H5Dataset("train", args.data, name="ramps", input_seq_length=PAST)
     steps = len(train) if args.steps is None else args.steps
-    # A few percent of the usual motion: the network learns to correct its own errors.
-    noise = 0.03 * math.sqrt(np.mean(np.square(metadata["vel_std"])))
+    # A tenth of the usual motion: the network learns to correct its own errors.
+    noise = 0.1 * math.sqrt(np.mean(np.square(metadata["vel_std"])))
     settings = {
         "mode": "train", "dtype": "float32", "dataset": {"src": args.data, "name": "ramps"},
         "model": {"name": "gns", "input_seq_length": PAST, "num_mp_steps": args.blocks,
