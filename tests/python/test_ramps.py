@@ -68,7 +68,7 @@ def apart(a, b):
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_plates_are_in_the_box_apart_from_each_other_and_thicker_than_two_spacings(
         tools, tmp_path, dimensions):
-    several = 0
+    several, gap = 0, 3 if dimensions == 2 else 2.5
     for path in made(tools, tmp_path / "r", "--number", 40, "--dimensions", dimensions):
         scene = yaml.safe_load(path.read_text())
         d, plates = scene["fluid"]["spacing"], scene["obstacles"]
@@ -76,12 +76,12 @@ def test_plates_are_in_the_box_apart_from_each_other_and_thicker_than_two_spacin
         places = [corners(p, dimensions == 2) for p in plates]
         for plate, c in zip(plates, places):
             assert min(plate["size"]) >= 2 * d * 0.999
-            assert np.all(c > np.array(scene["domain"]["min"]) + 2.9 * d)
-            assert np.all(c < np.array(scene["domain"]["max"]) - 2.9 * d)
+            assert np.all(c > np.array(scene["domain"]["min"]) + 0.99 * gap * d)
+            assert np.all(c < np.array(scene["domain"]["max"]) - 0.99 * gap * d)
         for k, c in enumerate(places):
             for other in places[:k]:
                 several += 1
-                assert apart(c, other) > 2.5 * d
+                assert apart(c, other) > 0.8 * gap * d
     assert several > 10
 
 

@@ -12,7 +12,8 @@ from .solids import turn_about
 # By the number of dimensions: the box, m, and the share of it that is water on average, m^D.
 BOX = {2: np.array([1.0, 1.0]), 3: np.array([1.0, 0.6, 1.0])}
 WATER = {2: 0.2, 3: 0.06}
-GAP = 3.0  # spacings between plates, and to the walls: water flows through without clogging
+GAP = {2: 3.0, 3: 2.5}  # spacings between plates, and to the walls: water does not clog there
+DEPTH = (0.15, 0.35)  # m, of plates along their axis
 TRIES = 200
 
 
@@ -80,8 +81,8 @@ class Plate:
 
     def surface(self, spacing: float) -> np.ndarray:
         """Points (N, 3) on the surface, with the corners, at most a spacing apart."""
-        lines = [np.linspace(-s / 2, s / 2, 1 + math.ceil(s / spacing)) if s else np.zeros(1)
-                 for s in self.size]
+        lines = [np.linspace(-s / 2, s / 2, 1 + max(1, math.ceil(s / spacing))) if s else
+                 np.zeros(1) for s in self.size]
         grid = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
         outer = np.any((np.abs(grid) >= self.size / 2) & (self.size > 0), axis=1)
         return self.middle + grid[outer] @ self.turn.T
@@ -134,19 +135,19 @@ class Ramp:
         return float(self.random.uniform(low, high))
 
     def _water(self) -> Water:
-        s, d, n = self.s, self.s.spacing, self.s.dimensions
-        volume = s.particles * self._between(0.8, 1.2) * d**n
+        s, d = self.s, self.s.spacing
+        count = s.particles * self._between(0.8, 1.2)
         ball = bool(self.random.integers(2))
         if ball:
-            size = np.full(3, 2 * math.sqrt(volume / math.pi) if self.flat else
-                           2 * (0.75 * volume / math.pi) ** (1 / 3))
+            size = np.full(3, 2 * d * (math.sqrt(count / math.pi) if self.flat else
+                                       (0.75 * count / math.pi) ** (1 / 3)))
         else:
-            depth = 1.0 if self.flat else self._between(0.5, 1.0) * self.box[1]
+            across = 1 if self.flat else round(self._between(0.5, 1.0) * self.box[1] / d)
             shape = math.exp(self._between(-1, 1) * math.log(2.5))  # width over height
-            edges = [math.sqrt(volume / depth * shape), depth, math.sqrt(volume / depth / shape)]
+            along = max(2, round(math.sqrt(count / across * shape)))
             # Of whole cells, so that none is cut.
-            size = np.array([max(2, min(round(e / d), math.floor(b / d + 1e-6))) * d
-                             for e, b in zip(edges, self.box)])
+            most = np.where(self.box > 0, np.floor(self.box / d + 1e-6), 1)
+            size = np.minimum([along, across, max(2, round(count / along / across))], most) * d
         size = size * [1, not self.flat, 1]
         room = np.maximum(self.box - size, 0)
         lot = np.array([self._between(0, 1), self._between(0, 1), self._between(0.3, 1)])
@@ -178,7 +179,7 @@ class Ramp:
 
     def _plate(self, under: bool) -> Plate:
         d, w = self.s.spacing, self.water
-        size = np.array([self._between(0.2, 0.5), 0 if self.flat else self._between(0.2, 0.5),
+        size = np.array([self._between(0.2, 0.5), 0 if self.flat else self._between(*DEPTH),
                          self._between(2, 3) * d])
         turn = 0 if self.flat else math.radians(self._between(-30, 30))
         low, high = np.zeros(3), self.box.copy()
@@ -193,13 +194,15 @@ class Ramp:
                      self._between(-60, 60))
 
     def _fits(self, plate: Plate, others: list[Plate]) -> bool:
-        d = self.s.spacing
-        surface = plate.surface(d)
+        d, gap = self.s.spacing, GAP[self.s.dimensions] * self.s.spacing
         inner = [a for a in range(3) if self.box[a]]
-        walls = np.minimum(surface, self.box - surface)[:, inner].min()
-        return bool(walls >= GAP * d and self.water.distance(surface).min() >= 1.5 * d and
-                    all(o.distance(surface).min() >= GAP * d and
-                        plate.distance(o.surface(d)).min() >= GAP * d for o in others))
+        corners = plate.surface(math.inf)  # says soon that most do not fit
+        if np.minimum(corners, self.box - corners)[:, inner].min() < gap:
+            return False
+        surface = plate.surface(d)
+        return bool(self.water.distance(surface).min() >= 1.5 * d and
+                    all(o.distance(surface).min() >= gap and
+                        plate.distance(o.surface(d)).min() >= gap for o in others))
 
     def text(self, name: str, head: str) -> str:
         """The scene as a file."""
