@@ -1,8 +1,15 @@
 """to-lagrangebench: data sets of runs, against h5py, NumPy and motions known beforehand."""
 
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+
 import h5py
 import numpy as np
 import pytest
+from conftest import ROOT
 from learning import FILES, data_of, frames_of, ramps, simulate  # noqa: F401
 
 from pbf_tools import to_lagrangebench, trajectory
@@ -162,3 +169,57 @@ def test_moments_of_any_blocks_are_those_of_the_whole():
     short.add(np.zeros((2, 1, 1)))
     short.end()
     assert short.values(1.0) == {"vel_mean": [0], "vel_std": [1], "acc_mean": [0], "acc_std": [1]}
+
+
+def test_the_page_leads_from_scenes_to_data_in_its_order(pbf, tmp_path):
+    """With fewer and shorter runs."""
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build/pbf").symlink_to(pbf)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools"), "PYTHONDONTWRITEBYTECODE": "1",
+                   "PATH": f"{os.path.dirname(sys.executable)}:{os.environ['PATH']}"}
+    page, said = (ROOT / "tools/LEARNING.md").read_text().partition("## Training")[0], []
+    for block in re.findall(r"```\n(.*?)```", page, re.DOTALL):
+        block = block.replace("--number 12 --particles 600", "--number 4 --particles 200 --frames 9")
+        words = [sys.executable, "-c", block] if block.startswith("import") else ["sh", "-ec", block]
+        done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        said.append(done.stdout)
+    assert "2 train, 1 valid, 1 test; 9 frames" in said[0] and "wrote 4 runs" in said[1]
+    assert re.match(r"\(9, \d+, 2\) fastest \d", said[2])
+    data, meta = data_of(tmp_path / "ramps_data")
+    with h5py.File(tmp_path / "ramps_data/train.h5") as f:
+        groups = set(f["00000"])
+    for name in ("particle_type", "particle_id", "position", *groups, *meta):
+        if name not in ("solver", "t_end", "description"):
+            assert name in page or name.startswith(("num_", "sequence", "split")), name
+
+
+def test_the_training_script_says_what_it_lacks(tmp_path):
+    (tmp_path / "jax_sph").mkdir()
+    (tmp_path / "jax_sph/__init__.py").write_text("raise ImportError('it is not there')")
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data/metadata.json").write_text("{}")
+
+    def train(*words):
+        done = subprocess.run([sys.executable, "-B", ROOT / "tools/train_gns.py", *words], cwd=tmp_path,
+                              env={**os.environ, "PYTHONPATH": str(tmp_path)}, capture_output=True,
+                              text=True)
+        return done.returncode, done.stdout + done.stderr
+    assert train("--help")[0] == 0 and "python tools/train_gns.py ramps_data" in train("--help")[1]
+    for code, words, text in ((4, ["data"], "error: it is not there; tools/LEARNING.md"),
+                              (5, ["none"], "error: none: no metadata.json in it"),
+                              (2, ["data", "--steps", "1"], "--steps must be at least 20")):
+        found, said = train(*words)
+        assert found == code and text in said and "Traceback" not in said
+
+
+def test_the_training_script_keeps_the_losses_that_the_trainer_prints(capsys):
+    place = importlib.util.spec_from_file_location("train_gns", ROOT / "tools/train_gns.py")
+    script = importlib.util.module_from_spec(place)
+    place.loader.exec_module(script)
+    losses = script.Losses(40)
+    for part in ("Start training...", "\n", "00, train/loss: 2.50000.", "\n", "01, train/loss: 1.5.\n"):
+        losses.write(part)
+    assert losses.values == [2.5, 1.5]
+    shown = capsys.readouterr()
+    assert shown.out == "" and shown.err.startswith("Start training...\n2 steps, 0 s: mean loss 2.0000")
