@@ -86,8 +86,8 @@ def main() -> int:
         "train": {"step_max": steps - 1, "num_workers": 0, "noise_std": noise,
                   "optimizer": {"lr_start": args.rate, "lr_decay_steps": steps},
                   "pushforward": {"steps": [-1], "unrolls": [0], "probs": [1]}},
-        "eval": {"n_rollout_steps": ROLLOUT, "train": {"n_trajs": 1}},
-        "logging": {"log_steps": 1, "eval_steps": max(1, (steps - 1) // 4), "ckp_dir": args.out,
+        "eval": {"n_rollout_steps": ROLLOUT, "train": {"n_trajs": -1}},  # all for validation
+        "logging": {"log_steps": 1, "eval_steps": max(1, (steps - 1) // 5), "ckp_dir": args.out,
                     "run_name": "gns"},
         # The number of particles differs from run to run: this search takes lists that are padded.
         "neighbors": {"backend": "matscipy"}}

@@ -1,10 +1,15 @@
 """What to-lagrangebench refuses: runs that do not fit are named, and what is there stays."""
 
 import json
+import os
 import re
+import resource
+import subprocess
+import sys
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from learning import broken, data_of, ramps  # noqa: F401
 
 pytest.importorskip("yaml")
@@ -98,3 +103,17 @@ def test_too_few_runs_and_runs_given_twice_are_refused(tools, ramps, tmp_path):
     assert code == 5 and "none" in err
     code, _, err = tools("to-lagrangebench", *runs, ramps[3] / "ramp_00000", "-o", tmp_path / "data")
     assert code == 2 and "the number of dimensions is 3" in err
+
+
+@pytest.mark.parametrize("size", [0, 1000, 3000, 20000, 40000])
+@pytest.mark.parametrize("command", ["to-npz", "to-lagrangebench", "to-lagrangebench --gzip"])
+def test_a_full_disk_is_one_line_and_leaves_nothing_half_written(ramps, tmp_path, command, size):
+    """Here a limit on the size of a file: every write behind it fails."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+    done = subprocess.run([sys.executable, "-B", "-m", "pbf_tools", *command.split(), ramps[3], "-o",
+                           tmp_path / "out"], env={**os.environ, "PYTHONPATH": str(ROOT / "tools")},
+                          cwd=tmp_path, preexec_fn=limit, capture_output=True, text=True)
+    assert done.returncode == 5 and done.stderr.count("\n") == 1, (done.returncode, done.stderr)
+    assert re.fullmatch(r"pbf_tools: error: .*out.*: cannot write it: File too large\n", done.stderr)
+    assert list((tmp_path / "out").iterdir()) == []

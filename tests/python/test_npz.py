@@ -49,7 +49,7 @@ def test_one_run_becomes_one_file_without_solids_and_of_some_frames(tools, ramps
     assert code == 2 and "two of the runs would be ramp_00001.npz" in err
     (tmp_path / "file").touch()
     code, _, err = tools("to-npz", folder, "-o", tmp_path / "file/a.npz")
-    assert code == 5 and "cannot write" in err
+    assert code == 5 and "file/a.npz: cannot write it: " in err
 
 
 def test_no_more_of_a_run_is_in_memory_than_a_block(ramps, monkeypatch):

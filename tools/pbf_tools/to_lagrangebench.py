@@ -11,7 +11,6 @@ fluid, as differences from frame to frame (m), over the runs for training.
 from __future__ import annotations
 
 import argparse
-import contextlib
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -21,10 +20,10 @@ import h5py
 import numpy as np
 
 from . import trajectory
-from .errors import BadInput, FileError, note
+from .errors import BadInput, note
 from .moments import Moments
-from .table import write_text
 from .trajectory import Trajectory
+from .whole_file import KeptErrors, whole_files
 
 EXAMPLE = """examples:
   python -m pbf_tools make-scene ramps --seed 1 --number 100 -o ramps
@@ -96,16 +95,11 @@ def run(args: argparse.Namespace) -> int:
     parts = [[data[k] for k in part] for part in split(len(data), args.split, args.seed)]
     place = Place(data[0], args)
     moments = Moments(place.box)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        with _unfinished(out, files) as part_file:
-            for name, members in zip(PARTS, parts):
-                _write(part_file(f"{name}.h5"), members, place, args.gzip,
-                       moments if name == "train" else None)
-            content = metadata(parts, place, moments, args)
-            write_text(part_file("metadata.json"), json.dumps(content, indent=1) + "\n")
-    except OSError as problem:
-        raise FileError(f"{out}: cannot write the data set: {problem.strerror or problem}") from None
+    with whole_files([out / name for name in files]) as unfinished:
+        for path, name, members in zip(unfinished, PARTS, parts):
+            _write(path, members, place, args.gzip, moments if name == "train" else None)
+        content = metadata(parts, place, moments, args)
+        unfinished[-1].write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     sizes = ", ".join(f"{len(members)} {name}" for name, members in zip(PARTS, parts))
     print(f"wrote {out}: {sizes}; {len(data[0].frames)} frames, at most "
           f"{content['num_particles_max']} particles")
@@ -155,44 +149,37 @@ def _require_alike(data: list[Trajectory]) -> None:
                                f"{value(first)}; the runs of a data set must have the same")
 
 
-@contextlib.contextmanager
-def _unfinished(out: Path, files: list[str]):
-    """Files under other names until all are complete: what is read is never half written."""
-    def part(name: str) -> Path:
-        return out / f"{name}.part"
-
-    try:
-        yield part
-        for name in files:
-            part(name).replace(out / name)
-    finally:
-        for name in files:
-            part(name).unlink(missing_ok=True)
-
-
 def _write(path: Path, members: list[Trajectory], place: Place, gzip: bool,
            moments: Moments | None) -> None:
-    """One file; a few MB of a run are in memory at a time."""
-    with h5py.File(path, "w") as file:
-        for k, t in enumerate(members):
-            group = file.create_group(f"{k:05d}")
-            group.attrs["run"] = t.name
-            group["particle_type"] = t.types.astype(np.int64)
-            group["particle_id"] = t.ids.astype(np.int64)
-            shape = (len(t.frames), len(t.types), len(t.axes))
-            how = {"chunks": (min(8, shape[0]), *shape[1:]), "compression": "gzip",
-                   "shuffle": True} if gzip else {}
-            position = group.create_dataset("position", shape, np.float32, **how)
-            position.attrs["units"] = "m"
-            row = 0
-            for block in t.blocks():
-                block = (block - place.origin).astype(np.float32)
-                position[row:row + len(block)] = block
-                row += len(block)
-                if moments:
-                    moments.add(block[:, :t.count].astype(np.float64))
-            if moments:
-                moments.end()
+    """One file; a few MB of a run are in memory at a time. OSError, also on a full disk."""
+    with path.open("w+b", buffering=0) as raw:
+        kept = KeptErrors(raw)
+        with h5py.File(kept, "w") as file:
+            for k, t in enumerate(members):
+                _write_run(file.create_group(f"{k:05d}"), t, place, gzip, moments, kept)
+        kept.check()
+
+
+def _write_run(group: h5py.Group, t: Trajectory, place: Place, gzip: bool, moments: Moments | None,
+               kept: KeptErrors) -> None:
+    group.attrs["run"] = t.name
+    group["particle_type"] = t.types.astype(np.int64)
+    group["particle_id"] = t.ids.astype(np.int64)
+    shape = (len(t.frames), len(t.types), len(t.axes))
+    how = {"chunks": (min(8, shape[0]), *shape[1:]), "compression": "gzip", "shuffle": True} \
+        if gzip else {}
+    position = group.create_dataset("position", shape, np.float32, **how)
+    position.attrs["units"] = "m"
+    row = 0
+    for block in t.blocks():
+        block = (block - place.origin).astype(np.float32)
+        position[row:row + len(block)] = block
+        kept.check()
+        row += len(block)
+        if moments:
+            moments.add(block[:, :t.count].astype(np.float64))
+    if moments:
+        moments.end()
 
 
 def metadata(parts: list[list[Trajectory]], place: Place, moments: Moments,

@@ -18,8 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from . import trajectory
-from .errors import BadInput, FileError
+from .errors import BadInput
 from .trajectory import Trajectory
+from .whole_file import whole_files
 
 EXAMPLE = """examples:
   python -m pbf_tools to-npz out/demo -o demo.npz
@@ -52,11 +53,7 @@ def run(args: argparse.Namespace) -> int:
     for t in all_of_them:
         path = Path(args.out) / f"{t.name}.npz" if several else Path(args.out)
         values = arrays(t)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with path.open("wb") as file:
-                np.savez(file, **values)
-        except OSError as problem:
-            raise FileError(f"{path}: cannot write the file: {problem.strerror}") from None
+        with whole_files([path]) as (unfinished,), unfinished.open("wb") as file:
+            np.savez(file, **values)
     print(f"wrote {len(all_of_them)} {'run' if len(all_of_them) == 1 else 'runs'} to {args.out}")
     return 0

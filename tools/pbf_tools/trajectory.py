@@ -22,7 +22,7 @@ from .sweep import SUMMARY, read_batch
 FLUID, FIXED, MOVING = 0, 1, 2
 NO_ID = -1  # of a particle that is not of the fluid
 BLOCK_BYTES = 1 << 24  # of positions at a time
-ENDING = 0.01  # of a spacing: positions beyond a wall by more are outside
+SLACK = 0.01  # of a spacing: positions beyond a wall by more are outside
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -139,7 +139,7 @@ class Trajectory:
         return np.stack([solid.at(*pose)[:, self.axes] for pose in poses])
 
     def _check(self, x: np.ndarray, numbers: list[int]) -> None:
-        slack = ENDING * self.spacing
+        slack = SLACK * self.spacing
         for what, bad, remedy in (
                 ("is not finite", ~np.isfinite(x), "leave it out with --frames"),
                 ("is outside the domain", (x < self.low - slack) | (x > self.high + slack),
