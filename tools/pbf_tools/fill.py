@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .errors import BadInput, FileError, MissingPackage
+from .lattice import lattice
 
 
 def fill_image(path: str, width: float, depth: float, spacing: float, threshold: float,
@@ -80,10 +81,10 @@ def fill_mesh(path: str, width: float, spacing: float) -> np.ndarray:
     mesh.points = (mesh.points - low) * (width / (high[0] - low[0]))
     size = (high - low) * (width / (high[0] - low[0]))
     axes = [(np.arange(max(1, round(s / spacing))) + 0.5) * spacing for s in size]
-    lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    points = lattice(axes)
     # Signed distance: negative inside.
-    distance = pyvista.PolyData(lattice).compute_implicit_distance(mesh)["implicit_distance"]
-    inside = lattice[np.asarray(distance) < 0]
+    distance = pyvista.PolyData(points).compute_implicit_distance(mesh)["implicit_distance"]
+    inside = points[np.asarray(distance) < 0]
     if not len(inside):
         raise BadInput(f"{path}: no particle fits inside; make --spacing smaller")
     return inside

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .lattice import lattice
 from .solids import turn_about
 
 # By the number of dimensions: the box, m, and the share of it that is water on average, m^D.
@@ -83,7 +84,7 @@ class Plate:
         """Points (N, 3) on the surface, with the corners, at most a spacing apart."""
         lines = [np.linspace(-s / 2, s / 2, 1 + max(1, math.ceil(s / spacing))) if s else
                  np.zeros(1) for s in self.size]
-        grid = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+        grid = lattice(lines)
         outer = np.any((np.abs(grid) >= self.size / 2) & (self.size > 0), axis=1)
         return self.middle + grid[outer] @ self.turn.T
 

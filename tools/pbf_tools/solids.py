@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .errors import BadInput
+from .lattice import lattice
 
 Profile = list[tuple[float, float]]  # distance from the axis, place along it
 
@@ -81,8 +82,7 @@ def walls(low: np.ndarray, high: np.ndarray, spacing: float, walled: np.ndarray,
         else:
             lines.append(low[a] + (numbers[there] + 0.5) * edge)
             outside.append(((numbers < 0) | (numbers >= cells))[there])
-    grid = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
-    return grid[np.any(np.stack(np.meshgrid(*outside, indexing="ij"), axis=-1).reshape(-1, 3), axis=1)]
+    return lattice(lines)[np.any(lattice(outside), axis=1)]
 
 
 def turn_about(axis: np.ndarray, degrees: float) -> np.ndarray:
@@ -111,7 +111,7 @@ def frame_along(way: np.ndarray) -> np.ndarray:
 def box_shell(size: np.ndarray, spacing: float, flat: bool) -> np.ndarray:
     """The outer cells of a box about 0 that is cut into cells of about a spacing."""
     cells = [1 if flat and a == 1 else max(1, round(size[a] / spacing)) for a in range(3)]
-    numbers = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), axis=-1).reshape(-1, 3)
+    numbers = lattice([np.arange(n) for n in cells])
     last = np.array(cells) - 1
     outer = [(numbers[:, a] == 0) | (numbers[:, a] == last[a]) for a in range(3)
              if a != 1 or not flat]
