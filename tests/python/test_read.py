@@ -286,6 +286,10 @@ def test_poses_of_obstacles_that_move_come_from_the_log(pbf, tmp_path):
         assert np.allclose(turn, [[c, -s, 0], [s, c, 0], [0, 0, 1]], rtol=0, atol=exact)
         assert np.allclose(turn @ turn.T, np.eye(3), rtol=0, atol=1e-12)
         assert np.allclose(middle, [0.7, 0.25, 0.45 + 0.5 * t], rtol=0, atol=1e-12)
+    turns, middles = run.obstacle_pose("blade", np.array([0.1, 0.25, 0.4]))
+    for k, t in enumerate([0.1, 0.25, 0.4]):
+        turn, middle = run.obstacle_pose("blade", t)
+        assert np.array_equal(turns[k], turn) and np.array_equal(middles[k], middle)
     with pytest.raises(pbf_tools.UnknownName, match="no moving obstacle ball; there are blade"):
         run.obstacle_pose("ball", 0)
     with pytest.raises(pbf_tools.BadInput, match="is not in the log"):

@@ -30,11 +30,12 @@ class Moments:
     def add(self, x: np.ndarray) -> None:
         """The next positions of a trajectory, (frames, particles, D)."""
         tail = self._tail if len(self._tail) else x[:0]
-        velocity = self._way(np.concatenate([tail, x]))
+        x = np.concatenate([tail, x])
+        velocity = self._way(x)
         # The first velocity of a tail of two has been counted.
         self._count("vel", velocity[max(0, len(tail) - 1):])
         self._count("acc", np.diff(velocity, axis=0))
-        self._tail = np.concatenate([tail, x])[-2:]
+        self._tail = x[-2:]
 
     def end(self) -> None:
         """The end of a trajectory."""

@@ -216,10 +216,11 @@ class Run:
         """
         return self._read(_gauges, "cannot read the gauges")
 
-    def obstacle_pose(self, name: str, time: float) -> tuple[np.ndarray, np.ndarray]:
+    def obstacle_pose(self, name: str, time: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where a moving obstacle is at a time, s: its turn (3, 3) and the place of its middle (3,),
         m. A point at p from the middle that the scene gives it is at middle + turn @ p. From the
-        rows of the log (`measure_every`), between them straight.
+        rows of the log (`measure_every`), between them straight. Of several times (T,), which read
+        the log once: (T, 3, 3) and (T, 3).
 
             turn, middle = run.obstacle_pose("blade", 0.5)
         """
@@ -228,15 +229,16 @@ class Run:
             moving = sorted({key.split("/")[1] for key in log if key.startswith("pose/")})
             raise UnknownName(f"{self.path}: {unknown('moving obstacle', name, moving)}")
         times = log["time"]
-        if not times[0] <= time <= times[-1] * (1 + 1e-9):
-            raise BadInput(f"{self.path}: {time} s is not in the log, which has {times[0]} to "
-                           f"{times[-1]} s")
+        for t in np.atleast_1d(time):
+            if not times[0] <= t <= times[-1] * (1 + 1e-9):
+                raise BadInput(f"{self.path}: {t} s is not in the log, which has {times[0]} to "
+                               f"{times[-1]} s")
 
-        def at(column: str) -> float:
-            return float(np.interp(time, times, log[f"pose/{name}/{column}"]))
+        def at(columns: list[str]) -> np.ndarray:
+            return np.stack([np.interp(time, times, log[f"pose/{name}/{c}"]) for c in columns], -1)
 
-        middle = np.array([at(k) for k in "xyz"])
-        turn = np.array([[at(f"turn_{k}{j}") for j in "xyz"] for k in "xyz"])
+        middle = at(["x", "y", "z"])
+        turn = np.stack([at([f"turn_{k}{j}" for j in "xyz"]) for k in "xyz"], -2)
         u, _, vt = np.linalg.svd(turn)  # the nearest rotation: between rows it is not quite one
         return u @ vt, middle
 

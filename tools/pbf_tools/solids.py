@@ -27,8 +27,8 @@ class Solid:
     points: np.ndarray
 
     def at(self, turn: np.ndarray, middle: np.ndarray) -> np.ndarray:
-        """The points in a pose of Run.obstacle_pose."""
-        return middle + (self.points - self.middle) @ turn.T
+        """The points in a pose of Run.obstacle_pose, or (poses, N, 3) in several."""
+        return middle[..., None, :] + (self.points - self.middle) @ np.swapaxes(turn, -1, -2)
 
 
 def solid_of(obstacle: Mapping[str, Any], spacing: float, flat: bool, low: np.ndarray,

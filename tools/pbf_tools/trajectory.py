@@ -135,8 +135,8 @@ class Trajectory:
         if not solid.moves:
             return np.broadcast_to(solid.points[:, self.axes],
                                    (len(numbers), len(solid.points), len(self.axes)))
-        poses = [self.run.obstacle_pose(solid.name, float(self.run.times[k])) for k in numbers]
-        return np.stack([solid.at(*pose)[:, self.axes] for pose in poses])
+        poses = self.run.obstacle_pose(solid.name, self.run.times[numbers])
+        return np.take(solid.at(*poses), self.axes, axis=-1)
 
     def _check(self, x: np.ndarray, numbers: list[int]) -> None:
         slack = SLACK * self.spacing
