@@ -32,7 +32,7 @@ double lattice_gamma(double ratio, double vol, int dimensions) {
 double fluid_layers(const Scene& s, const BodyBox& of_files) {
   BodyBox all = of_files;
   for (const Body& b : s.bodies)
-    if (b.shape != Shape::file) all.add(body_box(b));
+    if (!b.from_file()) all.add(body_box(b));
   double deepest = length(s.gravity) == 0 ? std::numeric_limits<double>::infinity() : 0;
   for (std::size_t k = 0; k < 3; ++k)
     if (s.gravity[k] != 0)

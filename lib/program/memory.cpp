@@ -86,7 +86,7 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
   add("initial id", "int32", 1, n);
   std::int64_t peak = n * std::max(48 + 4 * r, 24 + 8 * r + 4);
   for (const Body& b : s.bodies)
-    if (b.shape == Shape::file) peak = n * 96;  // particles of the file and of all bodies
+    if (b.from_file()) peak = n * 96;  // particles of the file and of all bodies
   return s.settle ? peak + 48 * n : peak;
 }
 

@@ -22,7 +22,7 @@ std::int64_t bytes_of_first(const Plan& plan, const Scene& s) {
                      chunk = std::min(n, std::int64_t{1} << 22);
   std::int64_t start = 200 * few, output = s.checkpoint ? 160 * piece : 0;
   for (const Body& b : s.bodies)
-    if (b.shape == Shape::file) start = 48 * n + 200 * few;
+    if (b.from_file()) start = 48 * n + 200 * few;
   if (s.output) output = std::max(output, 16 * chunk);  // numbers of vertices
   if (s.output && s.output->compression == Compression::gzip)
     output = std::max(output,

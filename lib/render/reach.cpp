@@ -167,7 +167,7 @@ std::vector<Parcel> StartVolume::parcels(std::int64_t particles) const {
   const double cell = scene_.cell_volume();
   double known = 0, files = 0;
   for (const scene_module::Body& body : scene_.bodies)
-    if (body.shape == Shape::file)
+    if (body.from_file())
       files += 1;
     else
       known += lattice_count(body, scene_.fluid.spacing, scene_.plane());
@@ -186,6 +186,7 @@ std::vector<Parcel> StartVolume::parcels(std::int64_t particles) const {
         parcel = of_shape(body);
         break;
       case Shape::file:
+      case Shape::mesh:
         parcel = {cell * std::max(0.0, static_cast<double>(particles) - known) / files,
                   0.5 * (low_ + high_),
                   high_,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lib/base/error.h"
+#include "lib/io/mesh_file.h"
 #include "lib/io/particle_file.h"
 #include "lib/program/obstacles.h"
 #include "lib/run/motion_files.h"
@@ -30,7 +31,7 @@ class IntoScene {
   void hold_inside(Double3& x) {
     const Domain& domain = scene_.domain;
     // Only particles from a file have a y of their own.
-    if (plane_ && scene_.bodies[body_].shape != Shape::file) x[1] = *plane_;
+    if (plane_ && !scene_.bodies[body_].from_file()) x[1] = *plane_;
     for (int a = 0; a < 3; ++a) {
       const double slack = 1e-9 * (domain.max[a] - domain.min[a]);
       if (!(x[a] >= domain.min[a] - slack && x[a] <= domain.max[a] + slack))
@@ -120,6 +121,23 @@ class FreePlaces {
   double h_, least_;
 };
 
+/// The lattice points in a mesh.
+Particles fill_mesh(const Scene& scene, const Body& body, const std::string& path,
+                    std::string* sha256) {
+  TriangleMesh mesh = read_mesh_file(path, sha256);
+  require_closed(mesh, path);
+  place(mesh, {body.scale, body.turn_axis, body.turn_angle, body.translate});
+  const double d = scene.fluid.spacing, count = volume_of(mesh) / (d * d * d);
+  if (!scene.plane() && count > kMaxParticles) bad_input(path, too_many_text(count));
+  Particles p;
+  p.position = points_in(mesh, d, scene.plane());
+  p.velocity.resize(p.size());
+  if (p.size() == 0)
+    bad_input(path, "holds no point of a lattice of fluid.spacing (" + to_text(d) +
+                        " m); lower that or raise scale");
+  return p;
+}
+
 /// Calls take(position, velocity) for every particle in the order of ids. Returns what Particles
 /// say besides. last: frees the particles of each file after its body.
 template <class Take>
@@ -139,7 +157,7 @@ Particles each_particle(StartPoints& points, bool last, const Take& take) {
       into.hold_off_walls(x);
       take(x, v);
     };
-    if (body.shape == Shape::file) {
+    if (body.from_file()) {
       const Particles& p = points.of_file(b);
       if (scene.dimensions == 2) refuse_velocity_along_y(scene, b, p.velocity);
       for (std::size_t i = 0; i < p.size(); ++i) put(p.position[i], p.velocity[i]);
@@ -159,10 +177,12 @@ Particles each_particle(StartPoints& points, bool last, const Take& take) {
 StartPoints::StartPoints(const Scene& scene, const std::string& scene_dir) : scene_(scene) {
   of_files_.resize(scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) try {
-      if (scene.bodies[b].shape != Shape::file) continue;
-      const std::string path = (std::filesystem::path(scene_dir) / scene.bodies[b].path).string();
-      SceneFile& file = files_.emplace_back(SceneFile{scene.bodies[b].path, ""});
-      of_files_[b] = read_particle_file(path, &file.sha256);
+      const Body& body = scene.bodies[b];
+      if (!body.from_file()) continue;
+      const std::string path = (std::filesystem::path(scene_dir) / body.path).string();
+      SceneFile& file = files_.emplace_back(SceneFile{body.path, ""});
+      of_files_[b] = body.shape == Shape::mesh ? fill_mesh(scene, body, path, &file.sha256)
+                                               : read_particle_file(path, &file.sha256);
       if (of_files_[b].size() == 0) bad_input(path, "holds no particles");
     } catch (const Error& e) {
       throw Error(e.code(), name_of(scene, b) + ".path: " + e.what());
@@ -176,7 +196,7 @@ std::int64_t count_particles(const StartPoints& points) {
   const FreePlaces free(scene);
   if (!free.all()) points.for_each([&](std::size_t, const Double3& x) { sum += free.has(x); });
   for (std::size_t b = 0; b < scene.bodies.size() && free.all(); ++b)
-    sum += scene.bodies[b].shape == Shape::file
+    sum += scene.bodies[b].from_file()
                ? double(points.of_file(b).size())
                : lattice_count(scene.bodies[b], scene.fluid.spacing, scene.plane());
   if (sum < 1)

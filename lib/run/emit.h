@@ -30,7 +30,7 @@ class StartPoints {
         if (plane) x[1] = *plane;
         f(b, x);
       };
-      if (scene_.bodies[b].shape != Shape::file)
+      if (!scene_.bodies[b].from_file())
         for_each_point(scene_.bodies[b], scene_.fluid.spacing, plane, put);
       else
         for (const Double3& x : of_files_[b].position) put(x);
@@ -60,8 +60,8 @@ std::int64_t count_particles(const StartPoints& points);
 /// machine. In two dimensions each shape is cut with the plane: square lattice, disc, two draws (x,
 /// z); particles of a file within the slab are put on the plane. Particles nearer to a wall than
 /// solver.wall_margin are moved to that distance, by up to half a spacing: the first update would
-/// clamp them and turn the move into a velocity. Throws Error(bad_input) for a particle outside the
-/// domain, or if a larger move is needed.
+/// clamp them and turn the move into a velocity. Mesh: points_in() its surface. Throws
+/// Error(bad_input) for a particle outside the domain, or if a larger move is needed.
 Particles emit_particles(StartPoints points);
 /// The same in pieces of at most `most` particles, without memory for all; those of files stay.
 /// Returns what Particles say besides. take may be null.

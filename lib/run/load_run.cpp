@@ -18,7 +18,7 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
   const auto missing = [&](const std::string& folder) {
     std::error_code error;
     for (const Body& b : scene.bodies)
-      if (b.shape == Shape::file && !fs::exists(fs::path(folder) / b.path, error)) return b.path;
+      if (b.from_file() && !fs::exists(fs::path(folder) / b.path, error)) return b.path;
     for (const std::string& path : motion_paths(scene))
       if (!fs::exists(fs::path(folder) / path, error)) return path;
     return std::string();

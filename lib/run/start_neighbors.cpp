@@ -56,7 +56,7 @@ Cell cell_of(const Double3& x, double edge) {
 
 bool may_be_over_dense(const Scene& s) {
   for (const Body& b : s.bodies)
-    if (b.shape == Shape::random_box || b.shape == Shape::file) return true;
+    if (b.shape == Shape::random_box || b.from_file()) return true;
   return any_near_bodies(s, -1e-6 * s.fluid.spacing);  // by more than rounding
 }
 
@@ -152,9 +152,9 @@ std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
                                   double reach) {
   std::vector<Candidate> out;
   points.for_each([&](std::size_t b, const Double3& x) {
-    const bool near =
-        s.bodies[b].shape == Shape::file ||
-        std::ranges::any_of(others[b], [&](std::size_t k) { return boxes[k].holds(x, reach); });
+    const bool near = s.bodies[b].from_file() || std::ranges::any_of(others[b], [&](std::size_t k) {
+                        return boxes[k].holds(x, reach);
+                      });
     if (!near) return;
     out.push_back({cell_of(x - s.domain.min, reach), b, x});
   });
@@ -197,7 +197,7 @@ StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles
 Overlap find_overlap(const StartPoints& points) {
   const Scene& s = points.scene();
   Overlap found;
-  const bool file = std::ranges::count(s.bodies, Shape::file, &Body::shape) > 0;
+  const bool file = std::ranges::any_of(s.bodies, &Body::from_file);
   if (s.bodies.size() < 2 && !file) return found;
   // Less by more than rounding: bodies that touch on one lattice are a full spacing apart.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
@@ -205,7 +205,7 @@ Overlap find_overlap(const StartPoints& points) {
   const std::vector<BodyBox> boxes = boxes_of(s, points);
   const Near others = near_bodies(boxes, reach);
   const std::vector<Candidate> list = candidates(s, points, boxes, others, reach);
-  for (const Candidate& c : list) found.of_files += s.bodies[c.body].shape == Shape::file;
+  for (const Candidate& c : list) found.of_files += s.bodies[c.body].from_file();
   const auto bodies = [&](std::size_t a, std::size_t b) {
     if (found.inside + found.pairs > 1) return;
     found.first = std::min(a, b);
@@ -223,7 +223,7 @@ Overlap find_overlap(const StartPoints& points) {
   std::int64_t distances = 0;
   const auto look = [&](const Candidate& a, const Candidate& b) {
     ++distances;
-    if (a.body == b.body && s.bodies[a.body].shape != Shape::file) return;
+    if (a.body == b.body && !s.bodies[a.body].from_file()) return;
     const Double3 r = a.x - b.x;
     if (!(dot(r, r) < reach * reach)) return;
     if (a.body == b.body) {

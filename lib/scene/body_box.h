@@ -31,7 +31,7 @@ struct BodyBox {
 /// Holds nothing; add() makes it the other one.
 inline constexpr BodyBox kNoBox{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
 
-/// m. Of a block, random box, sphere or cylinder; a file has none before it is read.
+/// m. Of a block, random box, sphere or cylinder; a file or mesh has none before it is read.
 inline BodyBox body_box(const Body& b) {
   BodyBox box{b.min, b.max};
   if (b.shape == Shape::sphere) {
@@ -52,7 +52,7 @@ inline BodyBox body_box(const Body& b) {
 /// Whether a place is in a body that is given by a shape, enlarged by `margin` (m, may be
 /// negative).
 inline bool is_in(const Body& b, const Double3& x, double margin) {
-  if (b.shape == Shape::file) return false;
+  if (b.from_file()) return false;
   if (b.shape == Shape::sphere) return length(x - b.center) <= b.radius + margin;
   if (b.shape != Shape::cylinder) return body_box(b).holds(x, margin);
   const Double3 axis = unit(b.to - b.from), off = x - b.from;

@@ -140,8 +140,11 @@ class Checker : public SceneRules {
     for (std::size_t b = 0; b < s_.bodies.size(); ++b) {
       const Body& body = s_.bodies[b];
       const std::string key = name(s_.bodies) + "[" + std::to_string(b) + "]";
-      if (body.shape == Shape::file || !check_place(body, key, domain)) {
-        known = known && body.shape == Shape::file;  // files are opened when particles are made
+      if (body.shape == Shape::mesh && good(body.turn_axis) &&
+          dot(body.turn_axis, body.turn_axis) == 0)
+        add(body.turn_axis, "has no direction; give one, [0, 0, 1] say");
+      if (body.from_file() || !check_place(body, key, domain)) {
+        known = known && body.from_file();  // files are opened when particles are made
         continue;
       }
       if (!good(s_.fluid.spacing, body.count)) continue;

@@ -59,7 +59,7 @@ KeyRows start_rows() {
            "thickness), with the density sum calibrated so that the rest lattice has density "
            "rho0. A number is used as it is.",
            automatic),
-       key(BODY(shape), one_of({"block", "sphere", "random_box", "file", "cylinder"}),
+       key(BODY(shape), one_of({"block", "sphere", "random_box", "file", "cylinder", "mesh"}),
            "Shape of the body; decides which keys it has.", required, is_kind),
        key(BODY(min), number("m", kCoordinate),
            "Lower corner of the box. In place of min and max the box may have center, its middle, "
@@ -85,8 +85,17 @@ KeyRows start_rows() {
        key(BODY(path), plain,
            "Particle file, relative to the scene file: CSV with the header x,y,z or "
            "x,y,z,vx,vy,vz, or HDF5 with datasets position (N, 3) and, if wanted, velocity (N, "
-           "3).",
-           required, of(Shape::file), names_file),
+           "3). Of a mesh: STL, binary or ASCII, or OBJ; its surface must be closed. The body is "
+           "the lattice points inside, half a spacing from the lower corner of its box on.",
+           required, of(Shape::file, Shape::mesh), names_file),
+       key(BODY(scale), number("", {1e-12, 1e12}),
+           "Meters per unit of the mesh's coordinates; 0.001 for millimeters.", of(Shape::mesh)),
+       key(BODY(turn_axis), number("", {-1e6, 1e6}),
+           "After scaling the mesh is turned about this axis through the origin.", of(Shape::mesh)),
+       key(BODY(turn_angle), number("degrees", {-360, 360}),
+           "By so much, counterclockwise seen from where the axis points.", of(Shape::mesh)),
+       key(BODY(translate), number("m", kCoordinate), "Then the mesh is moved by this.",
+           of(Shape::mesh), flat(FlatY::zero)),
        key(BODY(velocity), number("m/s", kRate),
            "Initial velocity, added to every particle of the body.", flat(FlatY::zero))}};
 }

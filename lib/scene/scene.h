@@ -17,7 +17,7 @@
 
 namespace pbf::scene_module {
 
-enum class Shape { block, sphere, random_box, file, cylinder };
+enum class Shape { block, sphere, random_box, file, cylinder, mesh };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
@@ -39,10 +39,17 @@ struct Body {
   std::int64_t count = 0;  ///< random_box: number of particles, uniform in the box
   std::uint64_t seed = 1;  ///< random_box: seed of the generator
   std::string path;        ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
-                           ///< relative to the scene file
+                           ///< mesh: STL or OBJ; relative to the scene file
   Place place{};           ///< of the path
   Double3 velocity{};      ///< m/s, added to every particle of the body
+  // mesh (lattice points inside): scaled, then turned about the origin, then moved
+  double scale = 1;
+  Double3 turn_axis{0, 0, 1};
+  double turn_angle = 0;  ///< degrees, by the right-hand rule
+  Double3 translate{};    ///< m
   bool operator==(const Body&) const = default;
+  /// Whether its particles are known only when its file is read.
+  bool from_file() const { return shape == Shape::file || shape == Shape::mesh; }
 };
 
 /// The faces of the domain in the order of WallBit's bits.

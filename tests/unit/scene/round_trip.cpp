@@ -40,7 +40,14 @@ Scene unlike_default() {
   drum.from = {0, -1.0 / 3, 1};
   drum.to = {0, 1.0 / 7, 1};
   drum.radius = 0.1;
-  s.bodies = {block, sphere, random, file, drum};
+  Body hull;
+  hull.shape = Shape::mesh;
+  hull.path = "odd name #3: hull.stl";
+  hull.scale = 1e-3 / 7;
+  hull.turn_axis = {0, -1.0 / 3, 1e5};
+  hull.turn_angle = -30.0 / 7;
+  hull.translate = {1.0 / 3, 0, -1e-7};
+  s.bodies = {block, sphere, random, file, drum, hull};
   s.domain.loads = true;
   Obstacle plane;
   plane.name = "odd name #1: [a], \"b\"";
