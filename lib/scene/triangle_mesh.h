@@ -39,6 +39,17 @@ double volume_of(const TriangleMesh& mesh);
 /// the message.
 void require_closed(const TriangleMesh& mesh, const std::string& file);
 
+/// Where a line along x at (y, z) crosses the surface.
+struct Crossing {
+  double x;
+  int winding;  ///< 1 inwards along x, -1 outwards
+};
+/// By growing x, of a line near (y, z) at most: as often inwards as outwards. among: triangles with
+/// all that the line may meet. d: a length that is small beside the mesh, m, of whose millionth the
+/// line may be moved.
+std::vector<Crossing> crossings(const TriangleMesh& mesh, const std::vector<std::int32_t>& among,
+                                double y, double z, double d);
+
 /// The points low + (i + 1/2) d inside, where low is the lower corner of its box, with x fastest. A
 /// box as a mesh has the points of a block. Where parts of a mesh overlap, a point counts once.
 /// plane: points of the square lattice in y = *plane instead. Needs a closed mesh.
