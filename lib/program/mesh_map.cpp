@@ -76,6 +76,12 @@ class Builder {
   void find_near() {
     near_.resize(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]));
     for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+      const Double3 center =
+          (1.0 / 3) * (mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2));
+      double radius = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        radius = std::max(radius, length(mesh_.corner(t, k) - center));
+      ball_.push_back({center, radius, std::int32_t(t)});
       std::array<int, 3> first{}, last{};
       for (std::size_t a = 0; a < 3; ++a) {
         const double low = std::min(
@@ -116,51 +122,73 @@ class Builder {
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
     if (all.empty()) return;  // outside: a body has a surface on each line
+    std::vector<bool> inside(std::size_t(bricks_[0] * kMapCells + 1));
     for (int z = 0; z < kAcross; ++z)
       for (int y = 0; y < kAcross; ++y) {
-        const int ny = j * kMapCells + y, nz = k * kMapCells + z;
-        const std::vector<Crossing> line = crossings(mesh_, all, at(1, ny), at(2, nz), kEdge);
+        const double py = at(1, j * kMapCells + y), pz = at(2, k * kMapCells + z);
+        const std::vector<Crossing> line = crossings(mesh_, all, py, pz, kEdge);
         int winding = 0;
         auto next = line.begin();
-        for (int nx = 0; nx <= bricks_[0] * kMapCells; ++nx) {
-          const double x = at(0, nx);
-          for (; next != line.end() && next->x <= x; ++next) winding += next->winding;
-          const Double3 place{x, at(1, ny), at(2, nz)};
-          for (const int i : {nx / kMapCells, nx / kMapCells - 1})  // a node on a face has two
-            if (i >= 0 && i < bricks_[0] && nx - i * kMapCells <= kMapCells)
-              set(brick_at(i, j, k), (z * kAcross + y) * kAcross + nx - i * kMapCells, place,
-                  winding > 0);
+        for (std::size_t n = 0; n < inside.size(); ++n) {
+          for (; next != line.end() && next->x <= at(0, int(n)); ++next) winding += next->winding;
+          inside[n] = winding > 0;
+        }
+        for (int i = 0; i < bricks_[0]; ++i) {
+          const std::size_t b = brick_at(i, j, k), first = std::size_t(i * kMapCells);
+          if (out_.brick[b] < 0) {
+            out_.brick[b] = inside[first] ? map_inside : map_outside;
+            continue;
+          }
+          const std::vector<Ball> near = near_line(b, py, pz);
+          for (std::size_t n = 0; n < std::size_t(kAcross); ++n)
+            set(std::size_t(out_.brick[b]) * kMapNodes + std::size_t((z * kAcross + y) * kAcross) +
+                    n,
+                {at(0, int(first + n)), py, pz}, inside[first + n], near);
         }
       }
   }
-  void set(std::size_t b, int node, const Double3& x, bool inside) {
-    const int number = out_.brick[b];
-    if (number < 0) {
-      if (inside) out_.brick[b] = map_inside;
-      return;
+  /// A triangle, and a ball about it.
+  struct Ball {
+    Double3 center;
+    double radius;
+    std::int32_t triangle;
+  };
+  /// The triangles of a brick within the band of the line along x at (y, z).
+  std::vector<Ball> near_line(std::size_t brick, double y, double z) const {
+    std::vector<Ball> out;
+    for (const std::int32_t t : near_[brick]) {
+      const Ball& ball = ball_[std::size_t(t)];
+      const double far = std::hypot(ball.center[1] - y, ball.center[2] - z);
+      if (far < band_ + ball.radius) out.push_back(ball);
     }
-    double nearest = band_ * band_;
+    return out;
+  }
+  void set(std::size_t node, const Double3& x, bool inside, const std::vector<Ball>& near) {
+    double nearest = band_;
     SharePart sum{inside ? 1.0 : 0.0, {}};
-    for (const std::int32_t t : near_[b]) {
-      const Double3 &p = mesh_.corner(std::size_t(t), 0), &q = mesh_.corner(std::size_t(t), 1),
-                    &r = mesh_.corner(std::size_t(t), 2);
+    const double scale = 1 / range_;
+    for (const Ball& ball : near) {
+      const double reach = ball.radius + std::max(nearest, range_);
+      const Double3 way = x - ball.center;
+      if (dot(way, way) >= reach * reach) continue;
+      const auto t = std::size_t(ball.triangle);
+      const Double3 &p = mesh_.corner(t, 0), &q = mesh_.corner(t, 1), &r = mesh_.corner(t, 2);
       const double far = distance_squared(x, p, q, r);
-      nearest = std::min(nearest, far);
-      const double scale = 1 / range_;
+      nearest = std::min(nearest, std::sqrt(far));
       if (far < range_ * range_)
         sum.add(share_of_triangle(scale * x, {scale * p, scale * q, scale * r}));
     }
-    const std::size_t n = std::size_t(number) * kMapNodes + std::size_t(node);
-    out_.away[n] = (inside ? -1 : 1) * std::sqrt(nearest);
     const double slope = kEdge / range_;
-    out_.shares[n] = {slope * sum.gradient[0], slope * sum.gradient[1], slope * sum.gradient[2],
-                      sum.share};
+    out_.away[node] = inside ? -nearest : nearest;
+    out_.shares[node] = {slope * sum.gradient[0], slope * sum.gradient[1], slope * sum.gradient[2],
+                         sum.share};
   }
 
   const TriangleMesh& mesh_;
   const double range_, band_;
   Double3 origin_{};
   std::array<int, 3> bricks_{};
+  std::vector<Ball> ball_;                       // by triangle
   std::vector<std::vector<std::int32_t>> near_;  // triangles, by brick
   MeshMap out_;
 };
