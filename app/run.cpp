@@ -112,7 +112,10 @@ int command_run(const RunOptions& options) {
     if (there && options.overwrite) RunFolder::refuse_overwrite(place.folder);
   };
   Start start = prepare(std::move(loaded),
-                        {.warnings = true, .strict = options.strict, .when_read = check_outputs});
+                        {.warnings = true,
+                         .strict = options.strict,
+                         .when_read = check_outputs,
+                         .progress = [&](const std::string& line) { log.progress(line); }});
   if (options.resume && !there)
     log.note("pbf: " + not_there_note(start.loaded, place.folder, !options.out.empty()));
   const RunResult result = run(std::move(start), place, control);

@@ -6,6 +6,7 @@
 #include PBF_SHAPE_FILE(sphere)
 #include PBF_SHAPE_FILE(cylinder)
 #include PBF_SHAPE_FILE(capsule)
+#include PBF_SHAPE_FILE(mesh)
 #undef PBF_SHAPE_FILE
 #undef PBF_SHAPES
-#define PBF_SHAPES Plane, Box, Sphere, Cylinder, Capsule
+#define PBF_SHAPES Plane, Box, Sphere, Cylinder, Capsule, Mesh

@@ -31,6 +31,12 @@ struct AnyShape {
     memcpy(&shape, bytes, sizeof(Shape));
     return shape;
   }
+  template <class Shape>
+  requires(std::is_same_v<Shape, S> || ...) bool is() const {
+    int k = 0;
+    (void)((std::is_same_v<Shape, S> ? true : (++k, false)) || ...);
+    return tag == k;
+  }
   /// Returns f(shape); the only function that distinguishes shapes.
   template <class F>
   PBF_HD auto with(F&& f) const {

@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "lib/base/stage_clock.h"
 #include "lib/campaign/stability.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
@@ -24,7 +24,7 @@ Scene scene_of(const StabilityCase& c, const StabilityOptions& o, const std::str
   bool auto_step = false;
   Scene s = scene_of_tree(root, problems, &auto_step);
   problems.raise();
-  read_motions(s, dir, auto_step);
+  read_linked_files(s, dir, auto_step);
   if (c.must.loads) {
     s.domain.loads = true;
     for (Obstacle& obstacle : s.obstacles) obstacle.loads = true;

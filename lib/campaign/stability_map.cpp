@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
@@ -22,7 +22,7 @@ Scene scene_with(const std::string& path, const StabilityOptions& run,
   std::vector<std::string> all = run.overrides;
   all.insert(all.end(), more.begin(), more.end());
   LoadedScene loaded = load_scene(path, all, run.base_folder);
-  read_motions(loaded.scene, loaded.folder, loaded.auto_step);
+  read_linked_files(loaded.scene, loaded.folder, loaded.auto_step);
   return loaded.scene;
 }
 

@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/campaign/study_reader.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
 #include "lib/scene/overrides.h"
@@ -162,7 +162,7 @@ StudyMember StudyReader::member(Node scene, const Settings& more) {
   const bool fine = problems_.empty();
   bool auto_step = false;
   m.scene = scene_of_tree(scene, problems_, &auto_step);
-  if (auto_step && fine && problems_.empty()) read_motions(m.scene, study_.scene_dir, true);
+  if (auto_step && fine && problems_.empty()) read_linked_files(m.scene, study_.scene_dir, true);
   if (m.scene.time.adaptive)
     problems_.add(path_, "time.adaptive",
                   "a study compares steps that stay as they are; add time.adaptive: off to `set`");

@@ -7,7 +7,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/program/motion.h"
 #include "lib/program/schedule.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/run/session.h"
 #include "lib/run/start.h"
 
@@ -94,7 +94,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
                                        const std::function<bool()>& stop,
                                        const std::function<void(double)>& progress) {
   Scene scene = member.scene;
-  read_motions(scene, study.scene_dir);
+  read_linked_files(scene, study.scene_dir);
   const Schedule schedule = make_schedule(scene);
   MemberResult out;
   out.updates = schedule.updates;

@@ -15,7 +15,7 @@
 #include "lib/exec/devices.h"
 #include "lib/io/run_layout.h"
 #include "lib/run/emit.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/load.h"
 #include "lib/scene/scene_files.h"
 
@@ -92,7 +92,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
   static const std::string program = program_text();
   Scene scene = m.scene;
   scene.name.clear();
-  read_motions(scene, study.scene_dir);
+  read_linked_files(scene, study.scene_dir);
   const Json key{"3",  // version of the format below
                  program,
                  about(m.scene.backend).on_device ? cuda_device_report() : cpu_model(),

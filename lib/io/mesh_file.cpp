@@ -20,7 +20,7 @@ namespace pbf::io_module {
 namespace {
 
 constexpr std::size_t kHead = 84, kRecord = 50;  // bytes of a binary STL, and of each triangle
-constexpr const char* kExpected = "expected STL (binary or ASCII) or OBJ";
+constexpr const char* kExpectedMesh = "expected STL (binary or ASCII) or OBJ";
 
 struct SamePlace {
   std::size_t operator()(const Double3& x) const {
@@ -189,17 +189,17 @@ TriangleMesh read_obj(const std::string& text, const std::string& name) {
                       obj_corner(lines, words[k], vertices));
     } else if (!any && words[0][0] != '#' && words[0] != "o" && words[0] != "g" &&
                words[0] != "mtllib" && words[0] != "usemtl" && words[0] != "s") {
-      bad_input(name, std::string("is no mesh, ") + kExpected);
+      bad_input(name, std::string("is no mesh, ") + kExpectedMesh);
     }
   }
-  if (!any) bad_input(name, std::string("is no mesh, ") + kExpected);
+  if (!any) bad_input(name, std::string("is no mesh, ") + kExpectedMesh);
   return weld.take();
 }
 
 }  // namespace
 
 TriangleMesh read_mesh(const std::string& bytes, const std::string& name) {
-  if (bytes.empty()) bad_input(name, std::string("is empty, ") + kExpected);
+  if (bytes.empty()) bad_input(name, std::string("is empty, ") + kExpectedMesh);
   std::uint32_t triangles = 0;
   if (bytes.size() >= kHead) {
     std::memcpy(&triangles, bytes.data() + 80, sizeof triangles);
@@ -213,9 +213,9 @@ TriangleMesh read_mesh(const std::string& bytes, const std::string& name) {
   if (!text && bytes.size() >= kHead)
     bad_input(name, fmt::format("is no mesh, {}; as binary STL it would say {} triangles, which "
                                 "take {} bytes, and the file has {}",
-                                kExpected, triangles, kHead + std::size_t(triangles) * kRecord,
+                                kExpectedMesh, triangles, kHead + std::size_t(triangles) * kRecord,
                                 bytes.size()));
-  if (!text) bad_input(name, std::string("is no mesh, ") + kExpected);
+  if (!text) bad_input(name, std::string("is no mesh, ") + kExpectedMesh);
   return read_obj(bytes, name);
 }
 

@@ -23,7 +23,7 @@ Calibration calibrated(double ratio) {
       }
   Calibration c;
   c.vol = 1 / sum;
-  c.wall_range = 0.7;
+  c.wall_range = kWallRange;
   c.wall_scale =
       (1 - c.vol * above) / density_half_space<double, S>(0.5 / ratio / c.wall_range).density;
   return c;

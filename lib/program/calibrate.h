@@ -17,5 +17,8 @@ struct Calibration {
   double vol = 1, wall_scale = 1, wall_range = 1;
 };
 Calibration calibrate(KernelMode kernels, double ratio, int dimensions = 3);
+/// h, the range of the walls of a scene; with fluid.mass nothing is calibrated.
+inline constexpr double kWallRange = 0.7;
+inline double wall_range(const Scene& s) { return s.fluid.mass ? 1 : kWallRange; }
 
 }  // namespace pbf::program_module

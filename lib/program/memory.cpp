@@ -12,6 +12,7 @@
 #include "lib/program/loads.h"
 #include "lib/program/plan.h"
 #include "lib/program/rank_plan.h"
+#include "lib/program/solid_maps.h"
 #include "lib/program/threads.h"
 
 namespace pbf::program_module {
@@ -256,6 +257,11 @@ MemoryPlan memory_of(const Scene& s, const Plan& plan, bool rank) {
   const std::int64_t relieved =
       rank ? add_moves(s, plan, memory) : add_before_run(s, plan, real, memory);
   add_fixed(s, plan, memory);
+  std::int64_t maps = 0;  // on the host, in double
+  for_each_map(plan.solids, 8, [&](std::size_t, const auto& map, const MapRows&, bool first) {
+    if (first) maps += 40 * map.nodes() + 4 * map.all_bricks();
+  });
+  if (maps > 0) memory.fixed.push_back({"maps of surfaces", maps});
   std::int64_t later = 0;
   for (const FixedMemory& f : memory.fixed) later += f.after_start ? f.bytes : 0;
   const std::int64_t beside =

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "kernels/boundary/near_rows.h"
+#include "lib/base/error.h"
+#include "lib/program/calibrate.h"
+#include "lib/program/mesh_map.h"
 #include "lib/program/motion.h"
 #include "lib/scene/vector3.h"
 
@@ -29,7 +34,45 @@ unsigned behind_walls(const Scene& s, const Matrix3& rows, const Double3& center
   return through;
 }
 
-Solid<double> solid_of(const Obstacle& o, const Scene& s, double time) {
+/// The part of the body's space, h, that is in the domain; without end beyond open faces.
+Bounds<double> wanted_of(const Scene& s, const Matrix3& rows, const Double3& center) {
+  Bounds<double> out{{kEndless, kEndless, kEndless}, {-kEndless, -kEndless, -kEndless}};
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Double3 x{};
+    for (std::size_t a = 0; a < 3; ++a)
+      x[a] = (corner >> a & 1 ? s.domain.max : s.domain.min)[a] - center[a];
+    const Vec3<double> at =
+        (1 / s.h()) * Vec3<double>{dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)};
+    out = {{std::min(out.low.x, at.x), std::min(out.low.y, at.y), std::min(out.low.z, at.z)},
+           {std::max(out.high.x, at.x), std::max(out.high.y, at.y), std::max(out.high.z, at.z)}};
+  }
+  return out;
+}
+
+/// The map of a surface that has been read, made when it is first asked for.
+shape::Mesh<double> map_of(const Obstacle& o, const Scene& s, const Matrix3& rows,
+                           const Double3& center, const MapProgress& progress) {
+  const SolidMesh& surface = *o.surface_file()->surface;
+  MapOptions options;
+  options.range = wall_range(s);
+  options.reach = options.range + kNearRoom;
+  options.everywhere = o.motion.has_value() || !s.domain.open.empty();
+  if (!options.everywhere) options.wanted = wanted_of(s, rows, center);
+  options.progress = progress;
+  const double by = o.meters() / s.h();
+  const auto& [low, high] = options.wanted;
+  const std::vector<double> numbers{
+      by, options.range, double(options.everywhere), low.x, low.y, low.z, high.x, high.y, high.z};
+  const MeshMap& map = surface.derived<MeshMap>(numbers, [&] {
+    TriangleMesh mesh = surface.mesh();
+    for (Double3& x : mesh.vertex) x = by * (x - surface.middle());
+    return make_mesh_map(mesh, options);
+  });
+  return map.at();
+}
+
+Solid<double> solid_of(const Obstacle& o, const Scene& s, double time,
+                       const MapProgress& progress = {}) {
   Matrix3 rows = o.axes();
   Double3 center = o.middle();
   if (o.motion) {
@@ -44,6 +87,8 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s, double time) {
   Solid<double> out;
   out.shape = std::visit(
       [&](const auto& keys) -> SomeShape<double> {
+        if constexpr (requires { keys.surface; })
+          if (keys.surface) return map_of(o, s, rows, center, progress);
         auto body = keys.make(h);
         if constexpr (requires { body.through; })
           body.through = behind_walls(s, rows, center, keys.make(1).ends());
@@ -62,6 +107,22 @@ std::vector<Solid<double>> solids_of(const Scene& scene, double time) {
   std::vector<Solid<double>> all;
   for (const Obstacle& o : scene.obstacles) all.push_back(solid_of(o, scene, time));
   return all;
+}
+
+void make_maps(const Scene& scene, const ObstacleProgress& progress) {
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
+    const Obstacle& o = scene.obstacles[k];
+    if (!o.surface_file()) continue;
+    try {
+      solid_of(o, scene, 0, [&](double done) {
+        if (progress) progress(k, done);
+      });
+    } catch (const Error& e) {
+      const std::string& place = o.surface_file()->place.text;
+      throw Error(e.code(), (place.empty() ? "" : place + ": ") + "obstacles[" + std::to_string(k) +
+                                "].path: its map " + e.what());
+    }
+  }
 }
 
 std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes, double time) {

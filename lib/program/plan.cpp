@@ -210,13 +210,13 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   if (s.fluid.mass) {
     const double h = s.h(), third = s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : h;
     plan.vol = plan.mass / (s.fluid.rest_density * h * h * third);
-    plan.wall_scale = plan.wall_range = 1;
+    plan.wall_scale = 1;
   } else {
     const Calibration c = calibrate(s.solver.kernels, s.fluid.smoothing_ratio, s.dimensions);
     plan.vol = c.vol;
     plan.wall_scale = c.wall_scale;
-    plan.wall_range = c.wall_range;
   }
+  plan.wall_range = wall_range(s);
   plan.sor = s.solver.sor.value_or(default_sor(s));
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sor_factors = chebyshev_factors(s.solver.iterations);

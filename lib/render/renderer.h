@@ -13,6 +13,7 @@
 
 #include "kernels/boundary/obstacle.h"
 #include "lib/base/worker.h"
+#include "lib/render/mesh_surface.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
@@ -40,6 +41,8 @@ struct View {
   std::array<int, 2> size{1280, 720};
   Camera camera;
   std::vector<Solid<double>> solids{};  ///< obstacles: lengths in m, along the scene's axes
+  /// Of those whose surface comes from a file, by their number: what is drawn of it.
+  std::vector<std::shared_ptr<const std::vector<MeshTriangle>>> surfaces{};
   /// Where they are at a time, s; empty: they stand.
   std::function<std::vector<Solid<double>>(double)> solids_at{};
   std::array<std::array<bool, 2>, 3> open{};  ///< of each axis, min and max: no wall, solids go on

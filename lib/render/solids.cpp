@@ -167,6 +167,15 @@ void add_faces(Body& body, const auto& shape) {
   }
 }
 
+void add_surface(Body& body, const std::vector<MeshTriangle>& surface) {
+  body.by_distance = true;  // not convex: its cuts are not those of its faces
+  for (const MeshTriangle& t : surface) {
+    Polygon polygon;
+    for (std::size_t k = 0; k < 3; ++k) polygon.push_back({t.place[k], t.normal[k], t.crease[k]});
+    body.add(std::move(polygon), unit(cross(t.place[1] - t.place[0], t.place[2] - t.place[0])));
+  }
+}
+
 /// The part of space in which a solid is drawn.
 struct Bounds {
   Double3 min, max;
@@ -216,7 +225,8 @@ std::vector<Polygon> section_of(const Body& body, const std::vector<Face>& faces
   return all;
 }
 
-std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
+std::vector<Face> faces_of(const View& view, const Solid<double>& solid,
+                           const std::vector<MeshTriangle>* surface) {
   const Bounds bounds = bounds_of(view, solid);
   const double size = length(view.domain_max - view.domain_min);
   const bool bounded = is_bounded(solid);
@@ -228,7 +238,10 @@ std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
     const Double3 middle = body.placed({0, 0, 0}) + (away - dot(away, up) * up);
     body.solid.center = {middle[0], middle[1], middle[2]};
   }
-  solid.shape.with([&](const auto& shape) { add_faces(body, shape); });
+  if (surface)
+    add_surface(body, *surface);
+  else
+    solid.shape.with([&](const auto& shape) { add_faces(body, shape); });
 
   // Cut at the bounds: what is inside of them, and the cuts themselves.
   const std::vector<Face> whole = body.faces;
@@ -266,8 +279,9 @@ SolidSurfaces surfaces_of(const View& view, const Projection& projection, const 
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
       for (const std::size_t k : {std::size_t{0}, i, i + 1}) triangles.push_back(seen(polygon[k]));
   };
-  for (const Solid<double>& solid : view.solids)
-    for (const Face& face : faces_of(view, solid)) {
+  for (std::size_t k = 0; k < view.solids.size(); ++k) {
+    const auto* surface = k < view.surfaces.size() ? view.surfaces[k].get() : nullptr;
+    for (const Face& face : faces_of(view, view.solids[k], surface)) {
       const Polygon& polygon = face.polygon;
       if (polygon.size() < 3) continue;
       if (!view.flat && dot(face.inside.normal, sun) <= 0) add(polygon, out.casters);
@@ -278,6 +292,7 @@ SolidSurfaces surfaces_of(const View& view, const Projection& projection, const 
           out.creases.push_back({projection.to_view(polygon[i].place),
                                  projection.to_view(polygon[(i + 1) % polygon.size()].place)});
     }
+  }
   return out;
 }
 

@@ -45,6 +45,12 @@ View view_of(const Scene& scene, std::int64_t particles) {
   view.size = render.size;
   view.camera = render.camera;
   view.solids = solids_in_metres(scene, 0);
+  for (const Obstacle& o : scene.obstacles) {
+    auto& drawn = view.surfaces.emplace_back();
+    if (const auto* file = o.surface_file(); file && file->surface)
+      drawn = std::make_shared<const std::vector<MeshTriangle>>(
+          drawn_triangles(*file->surface, o.meters()));
+  }
   if (has_moving_obstacles(scene))
     view.solids_at = [scene](double time) { return solids_in_metres(scene, time); };
   for (int k = 0; k < 3; ++k)

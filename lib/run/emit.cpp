@@ -9,7 +9,7 @@
 #include "lib/io/mesh_file.h"
 #include "lib/io/particle_file.h"
 #include "lib/program/obstacles.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/number.h"
 
 namespace pbf::run_module {
@@ -187,7 +187,7 @@ StartPoints::StartPoints(const Scene& scene, const std::string& scene_dir) : sce
     } catch (const Error& e) {
       throw Error(e.code(), name_of(scene, b) + ".path: " + e.what());
     }
-  for (SceneFile& file : motion_files(scene)) files_.push_back(std::move(file));
+  for (SceneFile& file : linked_files(scene)) files_.push_back(std::move(file));
 }
 
 std::int64_t count_particles(const StartPoints& points) {

@@ -8,7 +8,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/program/time_order.h"
 #include "lib/run/guard.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::run_module {
@@ -101,8 +101,8 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
     const double done = double(e.last_good.updates) * scene_.time.step;
     s.time.motion_begin += done;
     s.time.end = std::max(std::min(s.time.end, scene_.time.end - done), s.time.step);
-    make_paths_absolute(s);
   }
+  make_paths_absolute(s);
   // Keep the limits of the original run, although this one starts elsewhere.
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;

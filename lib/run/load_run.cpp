@@ -6,7 +6,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
 #include "lib/run/emit.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 
 namespace pbf::run_module {
 namespace fs = std::filesystem;
@@ -19,7 +19,7 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
     std::error_code error;
     for (const Body& b : scene.bodies)
       if (b.from_file() && !fs::exists(fs::path(folder) / b.path, error)) return b.path;
-    for (const std::string& path : motion_paths(scene))
+    for (const std::string& path : linked_paths(scene))
       if (!fs::exists(fs::path(folder) / path, error)) return path;
     return std::string();
   };
@@ -40,7 +40,7 @@ LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::s
   const std::string path = folder ? only_run_path(given) : given;
   if (!folder && !is_hdf5_file(path)) {
     LoadedScene loaded = load_scene(path, overrides, base_folder);
-    read_motions(loaded.scene, loaded.folder, loaded.auto_step);
+    read_linked_files(loaded.scene, loaded.folder, loaded.auto_step);
     return loaded;
   }
   try_run_file(path);
@@ -58,7 +58,7 @@ LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::s
   loaded.text = info.scene_text;
   loaded.bases = info.scene_bases;
   loaded.folder = folder_of_files(loaded.scene, path, info.scene_path);
-  read_motions(loaded.scene, loaded.folder);
+  read_linked_files(loaded.scene, loaded.folder);
   loaded.run_file = path;
   loaded.files = info.scene_files;
   loaded.files_known = !info.scene_sha256.empty();

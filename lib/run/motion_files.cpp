@@ -17,16 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls f(motion, key) for every motion that is read from a file. Scene may be const.
-template <class AnyScene, class F>
-void for_each_file(AnyScene& s, F&& f) {
-  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
-    if (auto& m = s.obstacles[k].motion; m && m->kind == MotionKind::file)
-      f(*m, "obstacles[" + std::to_string(k) + "].motion.path");
-  if (auto& m = s.tank_motion; m && m->kind == TankMotionKind::file)
-    f(*m, std::string("tank_motion.path"));
-}
-
 class Reader {
  public:
   /// `key`: the key with its place in the scene file.
@@ -148,39 +138,17 @@ double longest_of(const Scene& s) {
 
 }  // namespace
 
-void read_motions(Scene& scene, const std::string& dir, bool auto_step) {
-  for_each_file(scene, [&](auto& m, const std::string& key) {
-    const std::string place = m.place.text.empty() ? "" : m.place.text + ": ";
-    Reader reader(scene, place + key, (fs::path(dir) / m.path).string());
-    if constexpr (std::is_same_v<std::decay_t<decltype(m)>, Motion>) {
-      m.table = reader.read({"t,x,y,z", "t,x,y,z,rx,ry,rz"});
-    } else {
-      m.table = reader.read({"t,angle", "t,ax,ay,az"});
-      if ((m.table.columns == 1) != m.axis.has_value())
-        reader.fail(m.table.file, m.axis ? "holds accelerations, which have no axis; remove "
-                                           "tank_motion.axis"
-                                         : "holds angles; give tank_motion.axis");
-    }
-  });
-  if (auto_step) choose_step_of_motions(scene);
+void read_motion(const Scene& scene, Motion& m, const std::string& key, const std::string& file) {
+  m.table = Reader(scene, key, file).read({"t,x,y,z", "t,x,y,z,rx,ry,rz"});
 }
-
-std::vector<std::string> motion_paths(const Scene& scene) {
-  std::vector<std::string> all;
-  for_each_file(scene, [&](const auto& m, const std::string&) { all.push_back(m.path); });
-  return all;
-}
-
-std::vector<SceneFile> motion_files(const Scene& scene) {
-  std::vector<SceneFile> files;
-  for_each_file(scene, [&](const auto& m, const std::string&) {
-    files.push_back({m.path, m.table.sha256});
-  });
-  return files;
-}
-
-void make_paths_absolute(Scene& scene) {
-  for_each_file(scene, [](auto& m, const std::string&) { m.path = m.table.file; });
+void read_motion(const Scene& scene, TankMotion& m, const std::string& key,
+                 const std::string& file) {
+  Reader reader(scene, key, file);
+  m.table = reader.read({"t,angle", "t,ax,ay,az"});
+  if ((m.table.columns == 1) != m.axis.has_value())
+    reader.fail(m.table.file, m.axis ? "holds accelerations, which have no axis; remove "
+                                       "tank_motion.axis"
+                                     : "holds angles; give tank_motion.axis");
 }
 
 void choose_step_of_motions(Scene& scene) {

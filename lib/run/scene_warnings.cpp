@@ -11,6 +11,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/run/motion_warnings.h"
 #include "lib/run/start_neighbors.h"
+#include "lib/run/surface_warnings.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/body_box.h"
@@ -248,14 +249,20 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
 std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles) {
   const Scene& scene = points.scene();
   const std::vector<Track> tracks = tracks_of(scene);
-  std::vector<Warning> list{
-      {"units", units_text(scene)},        {"step", step_text(scene, particles)},
-      {"speed", passing_text(scene)},      {"motion", motion_text(scene)},
-      {"table", tables_text(scene)},       {"obstacles", obstacles_text(scene, tracks)},
-      {"wall", walls_text(scene, tracks)}, {"collision", collisions_text(scene, tracks)},
-      {"overlap", overlap_text(points)},   {"over-dense", over_dense_text(scene, particles)},
-      {"seam", seam_text(scene)},          {"relaxation", sor_text(scene)},
-      {"output", output_text(scene)}};
+  std::vector<Warning> list{{"units", units_text(scene)},
+                            {"step", step_text(scene, particles)},
+                            {"speed", passing_text(scene)},
+                            {"motion", motion_text(scene)},
+                            {"table", tables_text(scene)},
+                            {"obstacles", obstacles_text(scene, tracks)},
+                            {"thin", thin_text(scene)},
+                            {"wall", walls_text(scene, tracks)},
+                            {"collision", collisions_text(scene, tracks)},
+                            {"overlap", overlap_text(points)},
+                            {"over-dense", over_dense_text(scene, particles)},
+                            {"seam", seam_text(scene)},
+                            {"relaxation", sor_text(scene)},
+                            {"output", output_text(scene)}};
   std::erase_if(list, [](const Warning& w) { return w.text.empty(); });
   return list;
 }

@@ -8,6 +8,7 @@
 #include "lib/base/machine.h"
 #include "lib/exec/make_solver.h"
 #include "lib/exec/ranks/world.h"
+#include "lib/program/obstacles.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/settle.h"
@@ -40,6 +41,11 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
   Start start{std::move(loaded)};
   const Scene& scene = start.scene();
   const std::size_t available = available_memory();  // without the particles, which the plan counts
+  make_maps(scene, [&](std::size_t k, double done) {
+    if (options.progress)
+      options.progress(fmt::format("map of obstacles[{}] ({}): {:.0f} %", k,
+                                   scene.obstacles[k].surface_file()->path, 100 * done));
+  });
   const auto own = std::make_shared<const Scene>(scene);  // points outlive `start`
   const auto all = std::make_shared<StartPoints>(*own, start.loaded.folder);
   StartPoints& points = *all;

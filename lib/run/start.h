@@ -26,6 +26,8 @@ struct PrepareOptions {
   bool strict = false;                ///< they are an error
   bool particles = true;              ///< are made
   std::function<void()> when_read{};  ///< called before what takes long
+  /// Gets lines about the progress of what takes long, at times from threads, one at a time.
+  std::function<void(const std::string&)> progress{};
 };
 
 struct Start {
@@ -38,8 +40,8 @@ struct Start {
   const Scene& scene() const { return loaded.scene; }
 };
 
-/// Opens each particle file of the scene once. Its motions have been read (read_motions()). Throws,
-/// in this order, what StartPoints, count_particles(), `when_read` and make_plan() throw,
+/// Opens each particle file of the scene once. Its motions have been read (read_linked_files()).
+/// Throws, in this order, what StartPoints, count_particles(), `when_read` and make_plan() throw,
 /// Error(unavailable) as refuse_if_too_large(), Error(difference) for warnings where they are
 /// errors, and what emit_particles() throws.
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});

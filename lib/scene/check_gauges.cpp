@@ -97,6 +97,11 @@ class GaugeChecker : public SceneRules {
                  "(obstacles[].loads), or put the gauge on what stands",
                  g.on);
     }
+    if (o && o->surface_file())
+      return add(g.on,
+                 "the surface of {} comes from a file, which has no flat faces for a gauge; give "
+                 "it loads instead (obstacles[].loads)",
+                 g.on);
     if (!good(g.at) || !is_place(g.at) || !inside(g.at, place(g.at)) || !sizes) return;
     const SurfacePlace there = nearest_place_on(*surface, s_, place(g.at));
     const double d = s_.fluid.spacing;

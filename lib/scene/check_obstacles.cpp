@@ -15,6 +15,7 @@ class ShapeRules : public SceneRules {
   using SceneRules::SceneRules;
 
   double h() const { return s_.h(); }
+  bool paper() const { return good(s_.solver.kernels) && s_.solver.kernels == KernelMode::paper; }
   double smoothing_ratio() const { return s_.fluid.smoothing_ratio; }
   /// Whether h and the member were read without a problem.
   bool good_h(const double& member) const {
@@ -48,6 +49,9 @@ class ObstacleChecker : public ShapeRules {
     for (const Obstacle& o : s_.obstacles)
       if (good(o.shape))
         std::visit([&](const auto& keys) { keys.check(static_cast<ShapeRules&>(*this)); }, o.shape);
+    for (const Obstacle& o : s_.obstacles)
+      if (o.motion && std::holds_alternative<obstacle_keys::Heights>(o.shape))
+        add(o.motion->kind, "a bed of heights stands still; give a mesh to what moves");
   }
 };
 

@@ -47,6 +47,7 @@ struct KindKey {
   FlatY flat = FlatY::none;
   bool by_center = false;  ///< a corner of a box, which center and size may give as well
   std::size_t most = 0;    ///< largest length of a list of numbers
+  bool file = false;       ///< the path of a file
 };
 
 /// Calls f with each kind of a variant, all defaults, in the order of the list.

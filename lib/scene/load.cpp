@@ -67,9 +67,12 @@ void keep_places(PlacedScene& placed) {
   Scene& s = placed.scene;
   for (std::size_t k = 0; k < s.bodies.size(); ++k)
     s.bodies[k].place.text = placed.place("bodies[" + std::to_string(k) + "].path");
-  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+    const std::string name = "obstacles[" + std::to_string(k) + "]";
     if (auto& motion = s.obstacles[k].motion)
-      motion->place.text = placed.place("obstacles[" + std::to_string(k) + "].motion.path");
+      motion->place.text = placed.place(name + ".motion.path");
+    if (auto* file = s.obstacles[k].surface_file()) file->place.text = placed.place(name + ".path");
+  }
   if (s.tank_motion) s.tank_motion->place.text = placed.place("tank_motion.path");
 }
 

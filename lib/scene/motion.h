@@ -34,7 +34,7 @@ struct Swing {
 };
 
 /// The table of a file: `columns` numbers per row, at increasing times. Not a key of a scene:
-/// loading fills it in (lib/run/motion_files.h).
+/// loading fills it in (lib/run/linked_files.h).
 struct MotionTable {
   std::string file, sha256;  ///< where it was read, and the hash of its bytes
   int columns = 0;

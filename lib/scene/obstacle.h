@@ -12,12 +12,13 @@
 #define PBF_SHAPE_FILE(name) PBF_SHAPE_TEXT(lib/scene/shapes/name.h)
 // clang-format on
 #include "kernels/shapes/list.h"
+#include "lib/scene/shapes/heights.h"
 
 namespace pbf::scene_module {
 
 namespace obstacle_keys {
-/// The keys of a shape, in the order of the list.
-using Any = std::variant<PBF_SHAPES>;
+/// The keys of a shape, in the order of the list, and of those that become one of the list.
+using Any = std::variant<PBF_SHAPES, Heights>;
 }  // namespace obstacle_keys
 
 struct Obstacle {
@@ -35,6 +36,27 @@ struct Obstacle {
   template <class Shape>
   const Shape& as() const {
     return std::get<Shape>(shape);
+  }
+  /// Where its surface comes from; null if its keys say all.
+  obstacle_keys::SurfaceFile* surface_file() {
+    return std::visit(
+        [](auto& keys) -> obstacle_keys::SurfaceFile* {
+          if constexpr (requires { keys.surface; }) return &keys;
+          return nullptr;
+        },
+        shape);
+  }
+  const obstacle_keys::SurfaceFile* surface_file() const {
+    return const_cast<Obstacle*>(this)->surface_file();
+  }
+  /// m per unit of that file.
+  double meters() const {
+    return std::visit(
+        [](const auto& keys) {
+          if constexpr (requires { keys.meters(); }) return keys.meters();
+          return 1.0;
+        },
+        shape);
   }
   /// Its position in the scene, m: the center of a body, or a point of a plane.
   Double3 middle() const {

@@ -11,7 +11,7 @@
 #include "lib/exec/ranks/thread_ranks.h"
 #include "lib/program/dissipation.h"
 #include "lib/run/emit.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/run/start_neighbors.h"
 #include "lib/scene/load.h"
 #include "tests/support/catch.h"
@@ -27,7 +27,7 @@ struct RankScene {
     const std::string file = std::string(PBF_SOURCE_DIR) + "/" + name + ".yaml";
     const std::string folder = file.substr(0, file.rfind('/'));
     scene = load_scene(file, set).scene;
-    read_motions(scene, folder);
+    read_linked_files(scene, folder);
     StartPoints points(scene, folder);
     const std::int64_t n = count_particles(points);
     plan = make_plan(scene, n, start_neighbors(points, n));

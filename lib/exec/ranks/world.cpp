@@ -34,6 +34,11 @@ void each_motion(AnyScene& s, const F& f) {
 
 void add(Packer& p, const Scene& s) {
   p.add(resolved_yaml(s));
+  for (const Obstacle& o : s.obstacles)
+    if (const auto* f = o.surface_file()) {
+      const SolidMesh& mesh = *f->surface;
+      p.add(mesh.file()).add(mesh.sha256()).add(mesh.mesh().vertex).add(mesh.mesh().triangle);
+    }
   each_motion(s, [&](const auto& m) {
     const MotionTable& t = m.table;
     p.add(t.file).add(t.sha256).add(t.columns).add(t.time).add(t.values).add(t.line);
@@ -42,6 +47,14 @@ void add(Packer& p, const Scene& s) {
 }
 Scene take_scene(Unpacker& from) {
   Scene s = parse_stored_scene(from.take<std::string>(), "rank 0", {});
+  for (Obstacle& o : s.obstacles)
+    if (auto* f = o.surface_file()) {
+      auto file = from.take<std::string>(), sha256 = from.take<std::string>();
+      TriangleMesh mesh;
+      from.take(mesh.vertex), from.take(mesh.triangle);
+      f->surface = std::make_shared<const SolidMesh>(std::move(file), std::move(sha256),
+                                                     std::move(mesh));
+    }
   each_motion(s, [&](auto& m) {
     MotionTable& t = m.table;
     from.take(t.file), from.take(t.sha256), from.take(t.columns);

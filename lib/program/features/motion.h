@@ -218,7 +218,9 @@ struct Motion {
     /// Puts the obstacles at their places at `time`, until a step moves them.
     void stand(auto& c, double time) {
       if (!has_obstacles(c.scene)) return;
-      const std::vector<PosedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
+      std::vector<PosedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
+      const MapAddresses<Real>& maps = c.template memory<NearSolids>().maps;
+      for (std::size_t k = 0; k < all.size(); ++k) maps.set(k, all[k].solid);
       c.put(field::solids, all);
       if (!has_moving_obstacles(c.scene)) return;
       std::vector<Solid<Real>> solids;
@@ -229,8 +231,13 @@ struct Motion {
     /// The table of the steps to come.
     void before_steps(auto& c, const StepRange& steps) {
       if (!has_motion(c.scene) || !(c.p.dt > 0)) return;
-      const MotionRows<Real> rows =
+      MotionRows<Real> rows =
           motion_rows<Real>(c.scene, c.plan, c.p.boundary, steps, c.plan.substeps);
+      const MapAddresses<Real>& maps = c.template memory<NearSolids>().maps;
+      for (PoseStep<Real>& step : rows.steps) {
+        maps.set(std::size_t(step.solid), step.now.solid);
+        maps.set(std::size_t(step.solid), step.before);
+      }
       c.put(field::step_row, std::vector<int>{0});
       if (has_tank_motion(c.scene)) c.put(field::frame_steps, rows.frames);
       if (has_moving_obstacles(c.scene)) c.put(field::pose_steps, rows.steps);

@@ -10,6 +10,7 @@
 #include "lib/program/features/dissipation.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/obstacle_motion.h"
+#include "lib/program/solid_maps.h"
 #include "lib/program/time_order.h"
 
 namespace pbf::program_module {
@@ -43,7 +44,8 @@ template <class Real>
 SolidScene<Real> row_of(const field::SolidSceneRow&);
 
 /// The needs of a pass that asks solids for their density or their distance.
-using SolidNeeds = If<has_obstacles, Looks<field::solid_scene>, Looks<field::solids>>;
+using SolidNeeds = Needs<If<has_obstacles, Looks<field::solid_scene>, Looks<field::solids>>,
+                         If<has_maps, Looks<field::solid_maps>>>;
 /// The needs of a pass over neighbors that leaves near rows to a second launch. The sums of these
 /// rows are stored in the second array of velocities.
 using NearNeeds = Needs<If<has_obstacles, Reads<field::near_way_left>, Looks<field::near_row>,
@@ -51,9 +53,10 @@ using NearNeeds = Needs<If<has_obstacles, Reads<field::near_way_left>, Looks<fie
                         SolidNeeds>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// The needs of a pass after which rows may have become near.
-using ComeNearNeeds = Needs<If<has_solids, Updates<field::near_way_left>, Places<field::near_row>,
-                               Places<field::near_count>, Looks<field::solid_scene>>,
-                            If<has_obstacles, Looks<field::solids>>>;
+using ComeNearNeeds =
+    Needs<If<has_solids, Updates<field::near_way_left>, Places<field::near_row>,
+             Places<field::near_count>, Looks<field::solid_scene>>,
+          If<has_obstacles, Looks<field::solids>>, If<has_maps, Looks<field::solid_maps>>>;
 /// The needs of a pass that moves particles: loads are booked, too.
 using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
@@ -144,7 +147,8 @@ struct NearSolids {
   struct Memory : NoMemory {
     bool more_than_walls = false;  ///< more than a box that stands still
     SolidBoundary<Real> solids{};  ///< without addresses
-    int half_cells = 0;            ///< 0: particles anywhere may be near
+    MapAddresses<Real> maps{};
+    int half_cells = 0;  ///< 0: particles anywhere may be near
 
     template <class C>
     void make(C& c) {
@@ -160,6 +164,10 @@ struct NearSolids {
       scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::clamp_sums),
                               c.data(field::patches));
       c.put(field::solid_scene, {scene});
+      if (has_maps(s)) {
+        c.put(field::solid_maps, map_array<Real>(c.plan.solids));
+        maps = MapAddresses<Real>(c.plan.solids, c.data(field::solid_maps));
+      }
       const RunBounds<Real> run = bounds_of_run(s, c.plan, c.p.boundary);
       solids.obstacles = has_obstacles(s);
       solids.loaded = has_wall_loads(s);

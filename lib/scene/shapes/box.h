@@ -22,12 +22,9 @@ struct Box {
                 true, FlatY::low, true},
         KindKey{&Box::max, "max", "m", kCoordinate, "Upper corner of the box before it is turned.",
                 true, FlatY::high, true},
-        KindKey{&Box::turn_axis, "turn_axis", "", Range{-1e6, 1e6},
-                "The box is turned about this axis through its middle; with dimensions: 2 about "
-                "y.",
-                false},
-        KindKey{&Box::turn_angle, "turn_angle", "degrees", Range{-360, 360},
-                "By so much, counterclockwise seen from where the axis points.", false}};
+        KindKey{&Box::turn_axis, "turn_axis", "", Range{-1e6, 1e6}, kTurnAxisHelp, false},
+        KindKey{&Box::turn_angle, "turn_angle", "degrees", Range{-360, 360}, kTurnAngleHelp,
+                false}};
   }
   void check(auto& rules) const {
     if (rules.good(min, max) && rules.above(min, max)) {

@@ -21,6 +21,12 @@ namespace obstacle_keys {
 inline constexpr const char* kRadiusHelp =
     "Radius; of cylinders, capsules and discs at least the smoothing length.";
 
+inline constexpr const char* kTurnAxisHelp =
+    "It is turned about this axis: a box through its middle, with dimensions: 2 about y; a mesh, "
+    "after scaling, through the origin of its file.";
+inline constexpr const char* kTurnAngleHelp =
+    "By so much, counterclockwise seen from where the axis points.";
+
 /// The fluid resolves curvature only down to the smoothing length.
 void check_radius(auto& rules, const double& radius) {
   if (!rules.good_h(radius) || radius >= rules.h()) return;

@@ -18,7 +18,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/study.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/load.h"
 #include "tests/regression/frozen/hash.h"
 #ifdef PBF_HAS_CUDA
@@ -143,7 +143,7 @@ struct Found {
 Found run_case(const Case& c, Precision precision, Backend backend) try {
   Scene s = scene_of(c, precision, backend);
   const std::string dir = c.file.parent_path().string();
-  read_motions(s, dir);
+  read_linked_files(s, dir);
   s.threads = 1;
   Found found{result_of(s, dir, c.readings), {}, 0};
   if (about(backend).on_device || std::stoi(found.row) <= 1024) return found;

@@ -2,10 +2,14 @@
 // differences, and maps against exact integrals.
 #include "lib/program/mesh_map.h"
 
+#include <omp.h>
+#include <cstring>
+
 #include <numbers>
 #include <numeric>
 #include <random>
 
+#include "kernels/boundary/solid_scene.h"
 #include "lib/program/mesh_share.h"
 #include "tests/support/catch.h"
 
@@ -136,8 +140,8 @@ TEST_CASE("maps of a box, a sphere, a corner and a thin plate, turned, are withi
   for (const TriangleMesh& m : {box({0, 0, 0}, {3, 2, 2.5}), turned_box, sphere(1, 40, 20), ell(),
                                 turned_ell, box({0, 0, 0}, {3, 3, 0.25})}) {
     require_closed(m, "mesh");
-    const MeshMap made = make_mesh_map(m, kRange, 1.2);
-    const shape::Map<double> map = made.at();
+    const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});
+    const shape::Mesh<double> map = made.at();
     const auto [low, high] = box_of(m);
     double worst = 0, squares = 0;
     int points = 0;
@@ -163,8 +167,8 @@ TEST_CASE("maps of a box, a sphere, a corner and a thin plate, turned, are withi
 
 TEST_CASE("the distance of a map has the sign of the side, and is exact to a tenth of a cell") {
   const TriangleMesh m = box({0, 0, 0}, {4, 4, 4});
-  const MeshMap made = make_mesh_map(m, kRange, 1.2);
-  const shape::Map<double> map = made.at();
+  const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});
+  const shape::Mesh<double> map = made.at();
   for (const double z : {-1.1, -0.4, -0.01, 0.01, 0.3, 1.1}) {
     CAPTURE(z);
     CHECK(map.distance<3>({2.1, 1.9, 4 + z}) == Approx(z).margin(1e-9));
@@ -176,4 +180,145 @@ TEST_CASE("the distance of a map has the sign of the side, and is exact to a ten
   CHECK(map.distance<3>({4.6, 4.6, 2}) == Approx(std::sqrt(0.72)).margin(0.025));
   CHECK(map.share<Smoothing::consistent, false>({2, 2, 2}, 1 / kRange).share == Approx(1));
   CHECK(map.share<Smoothing::consistent, false>({2, 2, 9}, 1 / kRange).share == 0);
+}
+
+namespace {
+
+/// A bottle without a neck: walls and floor of a thickness around a hollow of 2 x 2 x 2.
+TriangleMesh tub(double thick) {
+  TriangleMesh m;
+  const double t = thick;
+  const auto ring = [&](double out, double z) {
+    for (const auto& [x, y] : {std::pair{0., 0.}, {2., 0.}, {2., 2.}, {0., 2.}})
+      m.vertex.push_back({x == 0 ? -out : 2 + out, y == 0 ? -out : 2 + out, z});
+  };
+  ring(t, -t), ring(t, 2), ring(0, 2), ring(0, 0);
+  for (std::int32_t r = 0; r < 3; ++r)
+    for (std::int32_t k = 0; k < 4; ++k) {
+      const std::int32_t a = 4 * r + k, b = 4 * r + (k + 1) % 4;
+      m.triangle.insert(m.triangle.end(), {{a, b, b + 4}, {a, b + 4, a + 4}});
+    }
+  m.triangle.insert(m.triangle.end(), {{0, 2, 1}, {0, 3, 2}, {12, 13, 14}, {12, 14, 15}});
+  return m;
+}
+/// A scene of one solid in a box whose walls are far.
+struct OneSolid {
+  MeshMap made;
+  PosedSolid<double> posed;
+  SolidScene<double> scene;
+  explicit OneSolid(const TriangleMesh& m)
+      : made(make_mesh_map(m, {.range = kRange, .reach = 1.2})) {
+    posed.solid.shape = made.at();
+    posed.solid.center = {20, 20, 20};
+    posed.bounds = {{0, 0, 0}, {40, 40, 40}};
+    scene.walls.extent = {40, 40, 40};
+    scene.walls.walls = 63;
+    scene.solid = &posed;
+    scene.solids = 1;
+  }
+  OneSolid(const OneSolid&) = delete;
+  Vec3<double> end(const Vec3<double>& from, const Vec3<double>& to) const {
+    const Vec3<double> c = posed.solid.center;
+    return solid_scene_path_end(scene, false, true, 0, c + from, c + to) - c;
+  }
+  double away(const Vec3<double>& x) const { return made.at().distance<3>(x); }
+};
+
+}  // namespace
+
+TEST_CASE("no path ends in a mesh or comes through a wall of half a smoothing length") {
+  for (const TriangleMesh& m : {ell(), tub(0.5), sphere(1, 40, 20)}) {
+    require_closed(m, "mesh");
+    const OneSolid s(m);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> u(-1, 1);
+    const auto [low, high] = box_of(m);
+    int met = 0;
+    double deepest = 0;
+    for (int i = 0; i < 40000; ++i) {
+      Vec3<double> at;
+      at.x = 0.5 * (low[0] + high[0] + (high[0] - low[0] + 2) * u(random));
+      at.y = 0.5 * (low[1] + high[1] + (high[1] - low[1] + 2) * u(random));
+      at.z = 0.5 * (low[2] + high[2] + (high[2] - low[2] + 2) * u(random));
+      if (s.away(at) < 0) continue;
+      const Vec3<double> to = at + 1.5 * Vec3<double>{u(random), u(random), u(random)};
+      const Vec3<double> end = s.end(at, to);
+      met += dot(end - to, end - to) > 0;
+      deepest = std::min(deepest, s.away(end));
+    }
+    CAPTURE(m.triangle.size(), met);
+    CHECK(met > 2000);
+    CHECK(deepest > -1e-6);
+  }
+}
+
+TEST_CASE("what is in a tub of walls half a smoothing length thick stays in it") {
+  const OneSolid s(tub(0.5));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int walk = 0; walk < 50; ++walk) {
+    Vec3<double> x{1, 1, 1};
+    for (int step = 0; step < 400; ++step) {
+      const Vec3<double> to = x + 0.6 * Vec3<double>{u(random), u(random), u(random)};
+      if (to.z > 1.9) continue;  // not over the rim
+      x = s.end(x, to);
+      CAPTURE(walk, step, x.x, x.y, x.z);
+      REQUIRE((x.x > -1e-6 && x.x < 2 + 1e-6 && x.y > -1e-6 && x.y < 2 + 1e-6 && x.z > -1e-6));
+    }
+  }
+}
+
+TEST_CASE("maps have the same bytes on any number of threads") {
+  const TriangleMesh m = tub(0.5);
+  omp_set_num_threads(1);
+  const MeshMap one = make_mesh_map(m, {.range = kRange, .reach = 1.2});
+  omp_set_num_threads(3);
+  const MeshMap three = make_mesh_map(m, {.range = kRange, .reach = 1.2});
+  omp_set_num_threads(omp_get_num_procs());
+  CHECK(one.brick == three.brick);
+  CHECK(one.away == three.away);
+  REQUIRE(one.shares.size() == three.shares.size());
+  CHECK(std::memcmp(one.shares.data(), three.shares.data(),
+                    one.shares.size() * sizeof(one.shares[0])) == 0);
+}
+
+TEST_CASE("a map that ends at the domain is the same there, also inside of what is cut off") {
+  const TriangleMesh m = box({-30, -3, -3}, {30, 3, 3});
+  const MeshMap all = make_mesh_map(m, {.range = kRange, .reach = 1.2}),
+                part = make_mesh_map(m, {.range = kRange,
+                                         .reach = 1.2,
+                                         .wanted = {{-2, -9, -9}, {2, 9, 9}},
+                                         .everywhere = false});
+  CHECK(part.away.size() < all.away.size() / 4);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3<double> x{2 * u(random), 5 * u(random), 5 * u(random)};
+    const double near = all.at().distance<3>(x);
+    CAPTURE(x.x, x.y, x.z);
+    REQUIRE(part.at().distance<3>(x) == Approx(near).margin(std::fabs(near) > 1.2 ? 2 : 0.13));
+    REQUIRE((part.at().distance<3>(x) < 0) == (near < 0));
+    const auto share = [&](const MeshMap& of) {
+      return of.at().share<Smoothing::consistent, false>(x, 1 / kRange).share;
+    };
+    REQUIRE(share(part) == Approx(share(all)).margin(0.013));
+  }
+  const auto few = [&] { make_mesh_map(m, {.range = kRange, .reach = 1.2, .most = 100000}); };
+  CHECK_THROWS_WITH(few(), Catch::Contains("nodes h/4 apart near its surface"));
+}
+
+TEST_CASE("where two parts of a mesh overlap the share ends at 1") {
+  TriangleMesh m = box({0, 0, 0}, {3, 3, 3});
+  const TriangleMesh other = box({2, 0.3, 0.2}, {5, 2.7, 2.8});
+  for (const auto& t : other.triangle) m.triangle.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  m.vertex.insert(m.vertex.end(), other.vertex.begin(), other.vertex.end());
+  const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});
+  const auto share = [&](const Vec3<double>& x) {
+    return made.at().share<Smoothing::consistent, false>(x, 1 / kRange).share;
+  };
+  CHECK(share({2.5, 1.5, 1.5}) == Approx(1));
+  CHECK(share({2, 1.5, 1.5}) == Approx(1).margin(1e-3));
+  CHECK(made.at().distance<3>({2.5, 1.5, 1.5}) < 0);
+  CHECK(share({5, 1.5, 1.5}) == Approx(0.5).margin(0.02));
+  for (const Vec4<double>& v : made.shares) REQUIRE((v.w >= 0 && v.w <= 1));
 }

@@ -1,5 +1,5 @@
 // time.step: auto with obstacles and tanks that move, against formulas of their motions.
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 
 #include <cmath>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "lib/run/load_run.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -129,7 +129,7 @@ TEST_CASE("auto step: a scene with motions is stored with its number and read ba
   CHECK(loaded.auto_step);
   CHECK(contains(resolved_yaml(loaded.scene), "step: 0.0008\n"));
   Scene again = parse(resolved_yaml(loaded.scene));
-  read_motions(again, "");
+  read_linked_files(again, "");
   CHECK(again == loaded.scene);
 }
 

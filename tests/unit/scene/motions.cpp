@@ -1,5 +1,5 @@
 // What a scene may say of motions, every error about them with its remedy, and their files.
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 
 #include "lib/run/emit.h"
 #include "lib/scene/difference.h"
@@ -30,7 +30,7 @@ std::string file_error(const std::string& text, const std::string& tank = "",
   const std::string place = "scene.yaml:6:33: ";
   folder.write("m.csv", text);
   try {
-    read_motions(s, folder.path.string());
+    read_linked_files(s, folder.path.string());
   } catch (const Error& e) {
     CHECK(e.code() == ExitCode::bad_input);
     std::string what = e.what(), dir = folder.path.string() + "/";
@@ -147,7 +147,7 @@ TEST_CASE("files of motions: what is wrong is named with its line") {
                  "needs at least two rows of numbers below the header"));
   Scene s = parse(kMinimal + "tank_motion: {kind: file, path: none.csv}\n");
   CHECK(
-      contains(error_of([&] { read_motions(s, "."); }),
+      contains(error_of([&] { read_linked_files(s, "."); }),
                "5 scene.yaml:6:33: tank_motion.path: ./none.csv: cannot be opened: No such file or "
                "directory; its path counts from the folder of the scene file"));
 }
@@ -157,7 +157,7 @@ TEST_CASE("files of motions and bodies: the place in the scene stands before tha
   folder.write("p.csv", "t,x,y,z\n0,0,0,0\n2,0.1,0\n");
   Scene s = parse(kMinimal + obstacle("{kind: file, path: p.csv}"));
   const std::string dir = folder.path.string();
-  CHECK(error_of([&] { read_motions(s, dir); }) ==
+  CHECK(error_of([&] { read_linked_files(s, dir); }) ==
         "2 scene.yaml:6:103: obstacles[0].motion.path: " + dir +
             "/p.csv:3: has 3 values, the header names 4");
   folder.write("b.csv", "x,y,z\n0.1,0.1,oops\n");
@@ -172,14 +172,14 @@ TEST_CASE("files of motions and bodies: the place in the scene stands before tha
   Scene made = s;
   made.obstacles[0].motion->place.text.clear();
   CHECK(made == s);
-  CHECK(contains(error_of([&] { read_motions(made, dir); }), "2 obstacles[0].motion.path: "));
+  CHECK(contains(error_of([&] { read_linked_files(made, dir); }), "2 obstacles[0].motion.path: "));
 }
 
 TEST_CASE("files of motions: the run keeps what it read of them, and may lie elsewhere") {
   const test::TemporaryFolder folder;
   folder.write("p.csv", "t,x,y,z\n0,0,0,0\n2,0.1,0,0\n");
   Scene s = parse(kMinimal + obstacle("{kind: file, path: p.csv}"));
-  read_motions(s, folder.path.string());
+  read_linked_files(s, folder.path.string());
   CHECK(s.obstacles[0].motion->table.values.size() == 2);
   const std::vector<SceneFile> files = StartPoints(s, folder.path.string()).files();
   REQUIRE(files.size() == 1);
@@ -187,7 +187,7 @@ TEST_CASE("files of motions: the run keeps what it read of them, and may lie els
   CHECK(files[0].sha256.size() == 64);
   make_paths_absolute(s);
   Scene again = s;
-  read_motions(again, "/elsewhere");
+  read_linked_files(again, "/elsewhere");
   CHECK(again == s);
 }
 

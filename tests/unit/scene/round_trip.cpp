@@ -138,7 +138,16 @@ Scene scene_with_all_blocks() {
 TEST_CASE("resolved scene: reads back to an equal scene, bit for bit") {
   const Scene plain = parse(kMinimal), other = unlike_default(), all = parse(reference_yaml()),
               periodic = parse(kMinimal, {"domain.periodic=[x, y]"});
-  for (const Scene& s : {plain, other, all, periodic}) {
+  Scene files = parse(kMinimal);  // refused beside kernels: paper
+  obstacle_keys::Mesh mesh;
+  mesh.path = "odd: hull {1}.stl", mesh.translate = {1.0 / 3, -2, 1e-9}, mesh.scale = 1e-3 / 3;
+  mesh.turn_axis = {1.0 / 7, 0, -1}, mesh.turn_angle = 100.0 / 3;
+  obstacle_keys::Heights bed;
+  bed.path = "../bed.csv", bed.translate = {0, 0, -1.0 / 3};
+  files.obstacles.resize(2);
+  files.obstacles[0].name = "hull", files.obstacles[0].shape = mesh;
+  files.obstacles[1].name = "bed", files.obstacles[1].shape = bed;
+  for (const Scene& s : {plain, other, all, periodic, files}) {
     const std::string text = resolved_yaml(s);
     CAPTURE(text);
     CHECK(parse(text) == s);

@@ -4,7 +4,7 @@
 
 #include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/load.h"
 #include "lib/solver/step_solver.h"
 #include "tests/support/catch.h"
@@ -82,6 +82,10 @@ const std::vector<Scenario> kScenarios = {
      20},
     {"configs/sloshing_tank", {"fluid.spacing=0.04"}},
     {"tests/regression/frozen/obstacles_2d", {"solver.kernels=paper"}},
+    {"tests/regression/frozen/meshes", {}, 60},
+    {"tests/regression/frozen/meshes",
+     {"time.order=1", "tank_motion=off", "solver.fused=false", "domain.loads=false",
+      "obstacles.0.motion=off"}},
 };
 
 struct Prepared {
@@ -95,7 +99,7 @@ struct Prepared {
     std::vector<std::string> set = of.set;
     set.insert(set.end(), {"precision=float", "output=off", "render=off", "threads=1"});
     scene = load_scene(file, set).scene;
-    read_motions(scene, folder);
+    read_linked_files(scene, folder);
     particles = emit_particles(scene, folder);
     for (std::size_t k = 0; k < particles.size(); k += 2) particles.velocity[k][0] += of.fast;
     plan = make_plan(scene, std::int64_t(particles.size()));
