@@ -95,31 +95,58 @@ constexpr Real kTouching = Real(sizeof(Real) == 4 ? 2e-6 : 1e-13);
 
 /// Finds where a line that starts outside enters, from distances alone; `leave` is not computed.
 /// Along a line, the distance from a convex body is a convex function, so Newton's steps converge
-/// without passing the surface. For other bodies a step is the distance, and at least an eighth of
-/// the way: thinner parts may be passed. What comes inside goes back.
+/// without passing the surface.
 template <int D, class Shape, class Real>
-PBF_HD LineSpan<Real> line_span_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
-                                         Tangent<Real>& entry) {
+PBF_HD LineSpan<Real> line_span_of_convex(const Shape& s, Vec3<Real> a, Vec3<Real> way,
+                                          Tangent<Real>& entry) {
   constexpr Real touching = kTouching<Real>;
-  const Real length = square_root(dot(way, way));
   Real t(0);
-  bool inside = false;
   for (int k = 0; k < 16 && t < Real(1); ++k) {
     const Vec3<Real> p = a + t * way;
     const Real away = s.template distance<D>(p);
     const Real down = -dot(s.template normal<D>(p), way);
-    if (Shape::convex && !(down > Real(0))) return {};
-    inside = away <= touching && down > Real(0) && (Shape::convex || away >= -touching);
-    if (inside) break;
-    inside = away < Real(0);
-    if (Shape::convex)
-      t = t + max2(away, touching) / down;
-    else
-      t = t + (inside ? away / length : max2(away / length, Real(0.125)));
+    if (!(down > Real(0))) return {};
+    if (away <= touching) {
+      entry = tangent_of<D>(s, p);
+      return {t, Real(1e30)};
+    }
+    t = t + max2(away, touching) / down;
   }
-  if (!inside) return {};
-  entry = tangent_of<D>(s, a + t * way);
-  return {t, Real(1e30)};
+  return {};
+}
+/// The same of any body: a step is the distance, and at least an eighth of the way, so that parts
+/// thinner than that may be passed. The last step is then halved some times: the tangent plane is
+/// that of a place before the surface.
+template <int D, class Shape, class Real>
+PBF_HD LineSpan<Real> line_span_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
+                                         Tangent<Real>& entry) {
+  if constexpr (Shape::convex) {
+    return line_span_of_convex<D>(s, a, way, entry);
+  } else {
+    constexpr Real touching = kTouching<Real>;
+    const Real length = square_root(dot(way, way));
+    Real before(0), t(0);
+    for (int k = 0; k < 16; ++k) {
+      const Vec3<Real> p = a + t * way;
+      const Real away = s.template distance<D>(p);
+      // What touches the surface enters only if it goes inwards.
+      bool enters = away < -touching;
+      if (!enters && away <= touching) enters = dot(s.template normal<D>(p), way) < Real(0);
+      if (enters) {
+        for (int i = 0; i < 10 && before < t; ++i) {
+          const Real middle = Real(0.5) * (before + t);
+          const bool in = s.template distance<D>(a + middle * way) < Real(0);
+          (in ? t : before) = middle;
+        }
+        entry = tangent_of<D>(s, a + before * way);
+        return {before, Real(1e30)};
+      }
+      if (!(t < Real(1))) return {};
+      before = t;
+      t = min2(Real(1), t + max2(away / length, Real(0.125)));
+    }
+    return {};
+  }
 }
 template <int D, class Shape, class Real>
 PBF_HD LineSpan<Real> line_span_of(const Shape& s, Vec3<Real> a, Vec3<Real> way,

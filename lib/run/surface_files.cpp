@@ -15,17 +15,13 @@ namespace {
 
 constexpr double kBeyond = 3;  // h, of a bed beyond the domain: more than the range of its share
 
-/// Calls f(); errors begin with the key, and say where a missing file is looked for.
+/// Calls f(); errors begin with the key.
 template <class F>
-auto with_key(const std::string& key, const std::string& file, F&& f) {
+auto with_key(const std::string& key, F&& f) {
   try {
     return f();
   } catch (const Error& e) {
-    std::error_code error;
-    const bool missing = e.code() == ExitCode::io && !std::filesystem::exists(file, error);
-    throw Error(e.code(),
-                key + ": " + e.what() +
-                    (missing ? "; its path counts from the folder of the scene file" : ""));
+    throw Error(e.code(), key + ": " + e.what());
   }
 }
 
@@ -146,7 +142,7 @@ TriangleMesh solid_below(const Grid& g, double bottom) {
 }  // namespace
 
 std::shared_ptr<const SolidMesh> read_surface(const std::string& key, const std::string& file) {
-  return with_key(key, file, [&] {
+  return with_key(key, [&] {
     std::string sha256;
     TriangleMesh mesh = read_mesh_file(file, &sha256);
     require_closed(mesh, file);
@@ -157,7 +153,7 @@ std::shared_ptr<const SolidMesh> read_surface(const std::string& key, const std:
 
 std::shared_ptr<const SolidMesh> read_heights(const Scene& scene, const Double3& translate,
                                               const std::string& key, const std::string& file) {
-  return with_key(key, file, [&] {
+  return with_key(key, [&] {
     std::string sha256;
     Particles points = read_particle_file(file, &sha256);
     for (Double3& p : points.position)

@@ -34,6 +34,7 @@ TEST_CASE("ranks that share a device give the bits of one") {
            {"configs/minimal", {"fluid.spacing=0.02", "solver.levels=on"}, 10},
            {"configs/dam_break_2d", {"fluid.spacing=0.016"}, 40},
            {"tests/regression/frozen/obstacles", {}, 60},
+           {"tests/regression/frozen/meshes", {}, 60},
            {"tests/regression/frozen/motions", {"viscosity.xsph=0.1", "gauges=[]"}, 60},
        })
     for (const char* reproducible : {"false", "true"}) {

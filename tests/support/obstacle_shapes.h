@@ -54,6 +54,22 @@ inline pbf::Obstacle box_obstacle(const pbf::Double3& min, const pbf::Double3& m
                                   const pbf::Double3& axis = {0, 0, 1}, double degrees = 0) {
   return obstacle_of(pbf::obstacle_keys::Box{min, max, axis, degrees});
 }
+/// The same box as a mesh.
+inline pbf::Obstacle mesh_obstacle(const pbf::obstacle_keys::Box& box) {
+  pbf::TriangleMesh m;
+  const pbf::Double3 middle = box.middle();
+  for (unsigned k = 0; k < 8; ++k) {
+    pbf::Double3& x = m.vertex.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a)
+      x[a] = (k >> a & 1 ? 0.5 : -0.5) * (box.max[a] - box.min[a]);
+  }
+  m.triangle = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  pbf::obstacle_keys::Mesh mesh;
+  mesh.translate = middle, mesh.turn_axis = box.turn_axis, mesh.turn_angle = box.turn_angle;
+  mesh.surface = std::make_shared<const pbf::SolidMesh>("box", "", std::move(m));
+  return obstacle_of(mesh);
+}
 inline pbf::Obstacle sphere_obstacle(const pbf::Double3& center, double radius) {
   return obstacle_of(pbf::obstacle_keys::Sphere{center, radius});
 }

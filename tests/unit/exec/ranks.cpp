@@ -28,6 +28,7 @@ TEST_CASE("several ranks give the bits of one: state, readings, measurements, sn
            {"configs/dam_break_2d", {"fluid.spacing=0.016", "vorticity.epsilon=1"}},
            {"tests/regression/frozen/obstacles", {}},
            {"tests/regression/frozen/obstacles", {"time.order=1"}},
+           {"tests/regression/frozen/meshes", {}},
            {"tests/regression/frozen/motions", {"viscosity.xsph=0.1", "gauges=[]"}},
        }) {
     const RankScene m(of.scene, of.set);
