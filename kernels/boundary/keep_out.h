@@ -23,15 +23,19 @@ struct WayOut {
 template <int D, class Shape, class Real>
 PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<Real> a,
                             Vec3<Real> b) {
-  const Vec3<Real> d = b - a;
   Tangent<Real> face;
-  if (s.template distance<D>(a) < Real(0)) {
-    face = tangent_of<D>(s, a);
-  } else {
+  bool met = false;
+  const Real away = s.template distance<D>(a);
+  const bool within = away < Real(0);
+  if (within) face = tangent_of<D>(s, a);
+  // What leaves a body that is not convex may meet it again.
+  if (!within || (!Shape::convex && !(face.level > dot(face.normal, b)))) {
+    const Vec3<Real> from = within ? a - away * face.normal : a, d = b - from;
     LineSpan<Real> inside;
-    if (dot(d, d) > Real(1e-30)) inside = line_span_of<D>(s, a, d, face);
+    if (dot(d, d) > Real(1e-30)) inside = line_span_of<D>(s, from, d, face);
     const bool meets = inside.enter < inside.leave && inside.leave > Real(0);
-    if (!(meets && inside.enter < Real(1))) {
+    met = meets && inside.enter < Real(1);
+    if (!met) {
       if (!(s.template distance<D>(b) < Real(0))) return {};
       if (!meets) face = tangent_of<D>(s, b);  // both ends are at the surface, to rounding
     }
@@ -39,7 +43,8 @@ PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<R
   if (!(dot(face.normal, face.normal) > Real(0))) face.normal = any_across<D>(frame);
   WayOut<Real> out{face.normal, max2(face.level - dot(face.normal, b), Real(0))};
   if constexpr (!Shape::convex)
-    out.again = s.template distance<D>(b + out.depth * out.normal) < -kTouching<Real>;
+    out.again = (met && !(out.depth > Real(0))) ||
+                s.template distance<D>(b + out.depth * out.normal) < -kTouching<Real>;
   return out;
 }
 

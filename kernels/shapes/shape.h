@@ -129,16 +129,21 @@ PBF_HD LineSpan<Real> line_span_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real
     for (int k = 0; k < 16; ++k) {
       const Vec3<Real> p = a + t * way;
       const Real away = s.template distance<D>(p);
-      // What touches the surface enters only if it goes inwards.
+      // What touches the surface enters it only if the line ends behind it there.
+      const auto ends_behind = [&](const Tangent<Real>& at) {
+        return at.level - dot(at.normal, a + way) > touching;
+      };
       bool enters = away < -touching;
-      if (!enters && away <= touching) enters = dot(s.template normal<D>(p), way) < Real(0);
+      if (!enters && away <= touching) enters = ends_behind(tangent_of<D>(s, p));
       if (enters) {
         for (int i = 0; i < 10 && before < t; ++i) {
           const Real middle = Real(0.5) * (before + t);
-          const bool in = s.template distance<D>(a + middle * way) < Real(0);
+          const bool in = s.template distance<D>(a + middle * way) < -touching;
           (in ? t : before) = middle;
         }
         entry = tangent_of<D>(s, a + before * way);
+        // Along one face into another one.
+        if (!ends_behind(entry)) entry = tangent_of<D>(s, a + t * way);
         return {before, Real(1e30)};
       }
       if (!(t < Real(1))) return {};

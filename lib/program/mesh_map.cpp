@@ -16,6 +16,8 @@ constexpr double kEdge = 0.25;
 /// The first node is off the corner of the box by this part of a cell, so that no node is on a face
 /// along the grid, where inside and outside would be a matter of rounding.
 constexpr double kOff = 0.37;
+/// Of the box in which a map is; each takes 30 bytes.
+constexpr double kMostBricks = 1 << 26;
 /// A line may be moved by less than this (crossings()).
 constexpr double kSlack = 1e-3 * kEdge;
 
@@ -66,7 +68,7 @@ class MapBuilder {
       bricks_[a] = int(std::min(n, 1e6));
       out_.map.bricks[a] = bricks_[a];
     }
-    if (!(bricks < double(options.most))) refuse(bricks);
+    if (!(bricks < kMostBricks)) refuse(bricks);
     out_.map.origin = {origin_[0], origin_[1], origin_[2]};
   }
 

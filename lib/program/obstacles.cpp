@@ -6,6 +6,7 @@
 
 #include "kernels/boundary/near_rows.h"
 #include "lib/base/error.h"
+#include "lib/base/machine.h"
 #include "lib/program/calibrate.h"
 #include "lib/program/mesh_map.h"
 #include "lib/program/motion.h"
@@ -49,6 +50,9 @@ Bounds<double> wanted_of(const Scene& s, const Matrix3& rows, const Double3& cen
   return out;
 }
 
+/// Of a node on the host, in double and in the precision of the run.
+constexpr std::int64_t kNodeBytes = 80;
+
 /// The map of a surface that has been read, made when it is first asked for.
 shape::Mesh<double> map_of(const Obstacle& o, const Scene& s, const Matrix3& rows,
                            const Double3& center, const MapProgress& progress) {
@@ -59,6 +63,8 @@ shape::Mesh<double> map_of(const Obstacle& o, const Scene& s, const Matrix3& row
   options.everywhere = o.motion.has_value() || !s.domain.open.empty();
   if (!options.everywhere) options.wanted = wanted_of(s, rows, center);
   options.progress = progress;
+  options.most =
+      std::min<std::int64_t>(options.most, std::int64_t(available_memory()) / kNodeBytes);
   const double by = o.meters() / s.h();
   const auto& [low, high] = options.wanted;
   const std::vector<double> numbers{

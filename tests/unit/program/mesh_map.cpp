@@ -256,7 +256,7 @@ TEST_CASE("what is in a tub of walls half a smoothing length thick stays in it")
   const OneSolid s(tub(0.5));
   std::mt19937 random(4);
   std::uniform_real_distribution<double> u(-1, 1);
-  for (int walk = 0; walk < 50; ++walk) {
+  for (int walk = 0; walk < 300; ++walk) {
     Vec3<double> x{1, 1, 1};
     for (int step = 0; step < 400; ++step) {
       const Vec3<double> to = x + 0.6 * Vec3<double>{u(random), u(random), u(random)};

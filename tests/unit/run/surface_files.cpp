@@ -103,7 +103,7 @@ TEST_CASE("a mesh that is no solid is refused at its key, with the open edges") 
   CHECK(contains(said, "scene.yaml:7:32: obstacles[0].path: "));
   CHECK(contains(said, "box.obj: is not closed: 3 edges have a triangle on one side only"));
   CHECK(contains(read_error(folder, surface_scene("- {name: a, shape: mesh, path: no.stl}")),
-                 "its path counts from the folder of the scene file"));
+                 "paths of meshes are relative to the folder of the scene file"));
   CHECK(contains(parse_error(surface_scene("- {name: a, shape: mesh}")), "path"));
   CHECK(
       contains(parse_error(surface_scene(kMesh + ", turn_axis: [0, 0, 0]}")), "has no direction"));
