@@ -152,6 +152,9 @@ struct Mesh {
       }
       sum.gradient = sum.gradient + Vec3<Real>{g[0], g[1], g[2]};
     }
+    // The polynomial leaves 0 to 1 by little, where loads would not be booked.
+    if (!(sum.share > Real(0))) return {};
+    if (!(sum.share < one)) return {one, {}};
     // Per range, as the other shapes.
     sum.gradient = (one / (edge * inv_range)) * sum.gradient;
     return sum;

@@ -108,23 +108,16 @@ TEST_CASE("loads on walls and obstacles are the weight less the change of moment
   check_all_loads(c);
 }
 
-TEST_CASE("a mesh has loads that are the weight less the change of momentum, near those of a box") {
-  const Case box = splash(false);
-  Case mesh = box;
-  pbf::Obstacle& o = mesh.scene.obstacles[0];
+TEST_CASE("a mesh too has loads that are the weight less the change of momentum") {
+  Case c = splash(false);
+  pbf::Obstacle& o = c.scene.obstacles[0];
   o.shape = pbf_test::mesh_obstacle(pbf_test::box_of(o)).shape;
-  check_all_loads(mesh);
-  const auto load = [](const Case& c) {
-    auto solver = make(c);
-    solver->step(40);
-    for (const WallLoad& l : loads_of(c, *solver))
-      if (l.wall == "o1") return l;
-    return WallLoad{};
-  };
-  const WallLoad of_box = load(box), of_mesh = load(mesh);
-  CHECK(of_box.peak > 0);
-  for (std::size_t k = 0; k < 3; ++k)
-    CHECK(of_mesh.force[k] == Approx(of_box.force[k]).margin(0.1 * std::fabs(of_box.force[2])));
+  SECTION("defaults") {}
+  SECTION("substeps") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.iterations = 1;
+  }
+  check_all_loads(c);
 }
 
 TEST_CASE("with levels too loads are the weight less the change of momentum", "[slow]") {
