@@ -29,8 +29,10 @@ PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<R
   const bool within = away < Real(0);
   if (within) face = tangent_of<D>(s, a);
   // What leaves a body that is not convex may meet it again.
-  if (!within || (!Shape::convex && !(face.level > dot(face.normal, b)))) {
-    const Vec3<Real> from = within ? a - away * face.normal : a, d = b - from;
+  const auto is_behind = [&] { return face.level - dot(face.normal, b) > kTouchingFace<Real>; };
+  const Vec3<Real> from = within && !Shape::convex ? a - away * face.normal : a;
+  if (!within || (!Shape::convex && !is_behind())) {
+    const Vec3<Real> d = b - from;
     LineSpan<Real> inside;
     if (dot(d, d) > Real(1e-30)) inside = line_span_of<D>(s, from, d, face);
     const bool meets = inside.enter < inside.leave && inside.leave > Real(0);
@@ -42,9 +44,17 @@ PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<R
   }
   if (!(dot(face.normal, face.normal) > Real(0))) face.normal = any_across<D>(frame);
   WayOut<Real> out{face.normal, max2(face.level - dot(face.normal, b), Real(0))};
-  if constexpr (!Shape::convex)
-    out.again = (met && !(out.depth > Real(0))) ||
-                s.template distance<D>(b + out.depth * out.normal) < -kTouching<Real>;
+  if constexpr (!Shape::convex) {
+    const Vec3<Real> end = b + out.depth * out.normal;
+    out.again =
+        (met && !(out.depth > Real(0))) || s.template distance<D>(end) < -kTouchingFace<Real>;
+    // The way along the face may meet another one.
+    if (!out.again && out.depth > Real(0)) {
+      Tangent<Real> other;
+      const LineSpan<Real> rest = line_span_of<D>(s, from, end - from, other);
+      out.again = rest.enter < rest.leave && rest.enter < Real(1);
+    }
+  }
   return out;
 }
 

@@ -92,6 +92,10 @@ PBF_HD Tangent<Real> tangent_of(const Shape& s, Vec3<Real> p) {
 /// h, the tolerance of a contact, in the order of the rounding of distances.
 template <class Real>
 constexpr Real kTouching = Real(sizeof(Real) == 4 ? 2e-6 : 1e-13);
+/// The same of bodies that are not convex, along whose faces paths are followed: above the rounding
+/// of coordinates of 100 h.
+template <class Real>
+constexpr Real kTouchingFace = Real(sizeof(Real) == 4 ? 2e-5 : 1e-12);
 
 /// Finds where a line that starts outside enters, from distances alone; `leave` is not computed.
 /// Along a line, the distance from a convex body is a convex function, so Newton's steps converge
@@ -123,7 +127,7 @@ PBF_HD LineSpan<Real> line_span_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real
   if constexpr (Shape::convex) {
     return line_span_of_convex<D>(s, a, way, entry);
   } else {
-    constexpr Real touching = kTouching<Real>;
+    constexpr Real touching = kTouchingFace<Real>;
     const Real length = square_root(dot(way, way));
     Real before(0), t(0);
     for (int k = 0; k < 16; ++k) {
