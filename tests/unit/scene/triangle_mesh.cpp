@@ -96,7 +96,7 @@ TEST_CASE("the points in a mesh are those that its surface winds around") {
   }
 }
 
-TEST_CASE("a mesh is scaled, then turned about the origin, then moved; its volume follows") {
+TEST_CASE("a mesh is scaled, then turned about the origin, then moved, and its volume follows") {
   TriangleMesh m = box({1, 0, 0}, {2, 1, 1});
   place(m, {2, {0, 0, 1}, 90, {10, 0, 0}});
   const auto [low, high] = box_of(m);
