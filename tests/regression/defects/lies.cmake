@@ -16,7 +16,8 @@ seeded_defect(undeclared_gather_of_lambda declarations lib/program/features/cons
 seeded_defect(undeclared_lists declarations lib/program/features/viscosity.h
   [[UsesLists, Writes<field::velocity>, Adds]] [[Writes<field::velocity>, Adds]])
 seeded_defect(undeclared_behind_address declarations lib/program/features/solids.h
-  [[Looks<field::solid_scene>, Looks<field::solids>>;]] [[Looks<field::solid_scene>>;]])
+  [[Needs<If<has_obstacles, Looks<field::solid_scene>, Looks<field::solids>>,]]
+  [[Needs<If<has_obstacles, Looks<field::solid_scene>>,]])
 seeded_defect(neighbor_of_own_row declarations lib/program/features/confinement.h
   [[Gathers<field::curl>,]] [[Reads<field::curl>,]])
 seeded_defect(write_to_what_is_read declarations lib/program/features/confinement.h
