@@ -1,5 +1,5 @@
-// Meshes, STL and OBJ: any bytes give a mesh of finite vertices or an Error; a closed one has points
-// inside its box.
+// Meshes, STL and OBJ: any bytes give a mesh of finite vertices or an Error; a closed one has
+// points inside its box.
 #include <cmath>
 #include <cstdlib>
 

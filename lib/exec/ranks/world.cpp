@@ -52,8 +52,8 @@ Scene take_scene(Unpacker& from) {
       auto file = from.take<std::string>(), sha256 = from.take<std::string>();
       TriangleMesh mesh;
       from.take(mesh.vertex), from.take(mesh.triangle);
-      f->surface = std::make_shared<const SolidMesh>(std::move(file), std::move(sha256),
-                                                     std::move(mesh));
+      f->surface =
+          std::make_shared<const SolidMesh>(std::move(file), std::move(sha256), std::move(mesh));
     }
   each_motion(s, [&](auto& m) {
     MotionTable& t = m.table;

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "lib/run/load_run.h"
 #include "lib/run/linked_files.h"
+#include "lib/run/load_run.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
