@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "tests/support/catch.h"
+#include "tests/support/meshes.h"
 #include "tests/support/scene_samples.h"
 
 using namespace pbf;
@@ -11,8 +12,6 @@ using namespace pbf::scene_test;
 
 namespace {
 
-constexpr int kFaces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                               {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
 /// Of a unit cube: bits of k are x, y, z.
 Double3 corner(int k) { return {double(k & 1), double(k >> 1 & 1), double(k >> 2)}; }
 
@@ -24,14 +23,14 @@ std::string obj() {
             "\r\n";
   }
   text += "vn 0 0 1\nvt 0 0\ng all\ns off\n";
-  for (const auto& f : kFaces)
+  for (const auto& f : test::kBoxFaces)
     text += "f " + std::to_string(f[0] + 1) + "/1/1 " + std::to_string(f[1] + 1) + "//1 " +
             std::to_string(f[2] - 8) + "\n";
   return text;
 }
 std::string ascii() {
   std::string text = "solid my cube\n";
-  for (const auto& f : kFaces) {
+  for (const auto& f : test::kBoxFaces) {
     text += " facet normal 0 0 0\n  outer loop\n";
     for (const int k : f) {
       const Double3 x = corner(k);
@@ -47,7 +46,7 @@ std::string binary(const char* header = "solid, says the header") {
   std::memcpy(bytes.data(), header, std::strlen(header));
   const std::uint32_t n = 12;
   std::memcpy(bytes.data() + 80, &n, sizeof n);
-  for (const auto& f : kFaces) {
+  for (const auto& f : test::kBoxFaces) {
     float value[12] = {};
     for (int k = 0; k < 3; ++k)
       for (int a = 0; a < 3; ++a) value[3 + 3 * k + a] = float(corner(f[k])[std::size_t(a)]);

@@ -12,22 +12,15 @@
 #include "kernels/boundary/solid_scene.h"
 #include "lib/program/mesh_share.h"
 #include "tests/support/catch.h"
+#include "tests/support/meshes.h"
 
 using namespace pbf;
+using test::box_mesh;
 
 namespace {
 
 constexpr double kRange = 0.7, kAmplitude = 1.2065;  // of walls with h = 2 d
 
-TriangleMesh box(const Double3& low, const Double3& high) {
-  TriangleMesh m;
-  for (int k = 0; k < 8; ++k)
-    m.vertex.push_back(
-        {k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]});
-  m.triangle = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
-}
 TriangleMesh sphere(double radius, int around, int down) {
   TriangleMesh m;
   m.vertex.push_back({0, 0, radius});
@@ -83,7 +76,7 @@ SharePart exact(const TriangleMesh& m, const Double3& x, double range) {
 }  // namespace
 
 TEST_CASE("before a face the share of a mesh is that of a half space") {
-  const TriangleMesh m = box({-5, -5, -5}, {5, 5, 0});
+  const TriangleMesh m = box_mesh({-5, -5, -5}, {5, 5, 0});
   for (const double z : {-0.99, -0.5, -0.01, 0.01, 0.3, 0.7, 0.99}) {
     CAPTURE(z);
     const SharePart part = exact(m, {0.13, 0.21, z}, 1);
@@ -133,12 +126,12 @@ TEST_CASE("the gradient of a share is its derivative, and shares are between 0 a
 }
 
 TEST_CASE("maps of a box, a sphere, a corner and a thin plate, turned, are within their errors") {
-  TriangleMesh turned_box = box({0, 0, 0}, {3, 2, 2.5}), turned_ell = ell();
+  TriangleMesh turned_box = box_mesh({0, 0, 0}, {3, 2, 2.5}), turned_ell = ell();
   place(turned_box, {1, {1, 2, 3}, 33, {0.1, 0.2, 0.3}});
   place(turned_ell, {1, {1, 1, 0.3}, 77, {}});
   std::mt19937 random(2);
-  for (const TriangleMesh& m : {box({0, 0, 0}, {3, 2, 2.5}), turned_box, sphere(1, 40, 20), ell(),
-                                turned_ell, box({0, 0, 0}, {3, 3, 0.25})}) {
+  for (const TriangleMesh& m : {box_mesh({0, 0, 0}, {3, 2, 2.5}), turned_box, sphere(1, 40, 20),
+                                ell(), turned_ell, box_mesh({0, 0, 0}, {3, 3, 0.25})}) {
     require_closed(m, "mesh");
     const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});
     const shape::Mesh<double> map = made.at();
@@ -166,7 +159,7 @@ TEST_CASE("maps of a box, a sphere, a corner and a thin plate, turned, are withi
 }
 
 TEST_CASE("the distance of a map has the sign of the side, and is exact to a tenth of a cell") {
-  const TriangleMesh m = box({0, 0, 0}, {4, 4, 4});
+  const TriangleMesh m = box_mesh({0, 0, 0}, {4, 4, 4});
   const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});
   const shape::Mesh<double> map = made.at();
   for (const double z : {-1.1, -0.4, -0.01, 0.01, 0.3, 1.1}) {
@@ -283,7 +276,7 @@ TEST_CASE("maps have the same bytes on any number of threads") {
 }
 
 TEST_CASE("a map that ends at the domain is the same there, also inside of what is cut off") {
-  const TriangleMesh m = box({-30, -3, -3}, {30, 3, 3});
+  const TriangleMesh m = box_mesh({-30, -3, -3}, {30, 3, 3});
   const MeshMap all = make_mesh_map(m, {.range = kRange, .reach = 1.2}),
                 part = make_mesh_map(m, {.range = kRange,
                                          .reach = 1.2,
@@ -308,8 +301,8 @@ TEST_CASE("a map that ends at the domain is the same there, also inside of what 
 }
 
 TEST_CASE("where two parts of a mesh overlap the share ends at 1") {
-  TriangleMesh m = box({0, 0, 0}, {3, 3, 3});
-  const TriangleMesh other = box({2, 0.3, 0.2}, {5, 2.7, 2.8});
+  TriangleMesh m = box_mesh({0, 0, 0}, {3, 3, 3});
+  const TriangleMesh other = box_mesh({2, 0.3, 0.2}, {5, 2.7, 2.8});
   for (const auto& t : other.triangle) m.triangle.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
   m.vertex.insert(m.vertex.end(), other.vertex.begin(), other.vertex.end());
   const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});

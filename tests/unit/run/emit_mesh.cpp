@@ -5,23 +5,16 @@
 #include "lib/run/start_neighbors.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
+#include "tests/support/meshes.h"
 #include "tests/support/scene_samples.h"
 
 namespace pbf::scene_test {
+using test::box_obj;
 using test::TemporaryFolder;
 namespace {
 
-/// A cube of edge 200, in millimeters; without its last triangle if `open`.
-std::string cube(bool open = false) {
-  std::string text;
-  for (int k = 0; k < 8; ++k)
-    for (int a = 0; a < 3; ++a)
-      text += (a == 0 ? "v " : " ") + std::string(k >> a & 1 ? "200" : "0") + (a == 2 ? "\n" : "");
-  text +=
-      "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\n"
-      "f 2 4 6\n";
-  return open ? text : text + "f 4 8 6\n";
-}
+constexpr Double3 kCube{200, 200, 200};  // mm
+
 std::string scene(const std::string& more, const std::string& path = "cube.obj") {
   return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.05}\nbodies:\n- {shape: "
          "mesh, path: " +
@@ -32,7 +25,7 @@ std::string scene(const std::string& more, const std::string& path = "cube.obj")
 
 TEST_CASE("a cube as a mesh makes the particles of a block, where it was moved and turned") {
   const TemporaryFolder folder;
-  folder.write("cube.obj", cube());
+  folder.write("cube.obj", box_obj(kCube));
   Scene s = parse(scene(", translate: [0.3, 0.4, 0.5], velocity: [0, 0, 2]"));
   std::string hash;
   const Particles p = emit_particles(s, folder.path.string());
@@ -53,8 +46,8 @@ TEST_CASE("a cube as a mesh makes the particles of a block, where it was moved a
 
 TEST_CASE("a mesh that makes no body of fluid is refused at its key") {
   const TemporaryFolder folder;
-  folder.write("cube.obj", cube());
-  folder.write("open.obj", cube(true));
+  folder.write("cube.obj", box_obj(kCube));
+  folder.write("open.obj", box_obj(kCube, true));
   const auto said = [&](const std::string& more, const std::string& path = "cube.obj") {
     return error_of([&] { emit_particles(parse(scene(more, path)), folder.path.string()); });
   };
@@ -72,7 +65,7 @@ TEST_CASE("a mesh that makes no body of fluid is refused at its key") {
 
 TEST_CASE("in two dimensions a mesh is cut by the plane of the particles") {
   const TemporaryFolder folder;
-  folder.write("cube.obj", cube());
+  folder.write("cube.obj", box_obj(kCube));
   std::string text = scene(", translate: [0.3, -0.1, 0.5]");
   text.replace(text.find("1, 1, 1"), 7, "1, 0.05, 1");
   const Scene s = parse("dimensions: 2\n" + text);
@@ -83,7 +76,7 @@ TEST_CASE("in two dimensions a mesh is cut by the plane of the particles") {
 
 TEST_CASE("a mesh and a block in one place are found to overlap") {
   const TemporaryFolder folder;
-  folder.write("cube.obj", cube());
+  folder.write("cube.obj", box_obj(kCube));
   std::string text = scene("");
   text.replace(text.find("time:"), 5,
                "- {shape: block, min: [0.1, 0, 0], max: [0.4, 0.2, 0.2]}\ntime:");

@@ -7,26 +7,14 @@
 #include "lib/run/surface_warnings.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
+#include "tests/support/meshes.h"
 #include "tests/support/scene_samples.h"
 
 namespace pbf::scene_test {
+using test::box_obj;
 using test::TemporaryFolder;
 namespace {
 
-/// A box, in millimeters; without its last triangle if `open`.
-std::string box_text(const Double3& edge, bool open = false) {
-  std::string text;
-  for (int k = 0; k < 8; ++k) {
-    text += "v";
-    for (int a = 0; a < 3; ++a)
-      text += " " + std::to_string(k >> a & 1 ? edge[std::size_t(a)] : 0.0);
-    text += "\n";
-  }
-  text +=
-      "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\n"
-      "f 2 4 6\n";
-  return open ? text : text + "f 4 8 6\n";
-}
 std::string surface_scene(const std::string& obstacles, const std::string& more = "") {
   return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.05}\nbodies:\n- {shape: "
          "block, min: [0, 0, 0], max: [1, 1, 0.5]}\ntime: {step: 0.001, end: 0.01}\nobstacles:\n" +
@@ -63,7 +51,7 @@ double distance_at(const Scene& s, const Double3& x) {
 TEST_CASE(
     "a mesh stands where it was scaled, turned and moved, and its distance is that of a box") {
   const TemporaryFolder folder;
-  folder.write("box.obj", box_text({400, 200, 300}));
+  folder.write("box.obj", box_obj({400, 200, 300}));
   Scene s = parse(surface_scene(kMesh + ", turn_angle: 90, translate: [0.6, 0.1, 0.2]}"));
   read_linked_files(s, folder.path.string());
   const Double3 middle = s.obstacles[0].middle();  // the box is x 0.4 to 0.6, y 0.1 to 0.5
@@ -81,8 +69,8 @@ TEST_CASE(
 
 TEST_CASE("scenes are equal if their meshes have the same path and contents") {
   const TemporaryFolder folder, other;
-  folder.write("box.obj", box_text({400, 200, 300}));
-  other.write("box.obj", box_text({400, 200, 301}));
+  folder.write("box.obj", box_obj({400, 200, 300}));
+  other.write("box.obj", box_obj({400, 200, 301}));
   const std::string text = surface_scene(kMesh + "}");
   Scene one = parse(text), same = parse(text), different = parse(text);
   CHECK(one == same);
@@ -97,7 +85,7 @@ TEST_CASE("scenes are equal if their meshes have the same path and contents") {
 
 TEST_CASE("a mesh that is no solid is refused at its key, with the open edges") {
   const TemporaryFolder folder;
-  folder.write("box.obj", box_text({400, 200, 300}, true));
+  folder.write("box.obj", box_obj({400, 200, 300}, true));
   const std::string text = surface_scene(kMesh + "}"), said = read_error(folder, text);
   CAPTURE(said);
   CHECK(contains(said, "scene.yaml:7:32: obstacles[0].path: "));
@@ -192,7 +180,7 @@ TEST_CASE("a bed far below or high over the domain is as good as none, or all") 
 TEST_CASE("a plate thinner than half the smoothing length is warned of, a thicker one is not") {
   const TemporaryFolder folder;
   for (const double thick : {20., 30., 60., 110.}) {  // h is 100 mm
-    folder.write("box.obj", box_text({400, 300, thick}));
+    folder.write("box.obj", box_obj({400, 300, thick}));
     Scene s = parse(surface_scene(kMesh + ", translate: [0.2, 0.2, 0.6]}"));
     read_linked_files(s, folder.path.string());
     CAPTURE(thick, thin_text(s));

@@ -5,22 +5,15 @@
 #include <random>
 
 #include "tests/support/catch.h"
+#include "tests/support/meshes.h"
 #include "tests/support/scene_samples.h"
 
 using namespace pbf;
+using test::box_mesh;
 using namespace pbf::scene_test;
 
 namespace {
 
-TriangleMesh box(const Double3& low, const Double3& high) {
-  TriangleMesh m;
-  for (int k = 0; k < 8; ++k)
-    m.vertex.push_back(
-        {k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]});
-  m.triangle = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
-}
 void add(TriangleMesh& to, const TriangleMesh& more) {
   const auto first = std::int32_t(to.vertex.size());
   to.vertex.insert(to.vertex.end(), more.vertex.begin(), more.vertex.end());
@@ -69,7 +62,7 @@ std::vector<Double3> brute_force(const TriangleMesh& m, double d) {
 
 TEST_CASE("a box as a mesh has the points of a block, also where lines go through edges") {
   // Lines through the diagonals of all faces.
-  const TriangleMesh m = box({-0.3, 0.1, 2}, {0.1, 0.5, 2.4});
+  const TriangleMesh m = box_mesh({-0.3, 0.1, 2}, {0.1, 0.5, 2.4});
   const std::vector<Double3> points = points_in(m, 0.05, {});
   REQUIRE(points.size() == 512);
   CHECK(points[0][0] == Approx(-0.275));
@@ -86,7 +79,7 @@ TEST_CASE("the points in a mesh are those that its surface winds around") {
   std::uniform_real_distribution<double> some(-1, 1);
   for (int k = 0; k < 6; ++k) {
     TriangleMesh m = torus(1, 0.4, 12, 8);
-    if (k % 2 == 1) add(m, box({0.2, -0.6, -0.3}, {1.1, 0.7, 0.2}));  // overlaps it
+    if (k % 2 == 1) add(m, box_mesh({0.2, -0.6, -0.3}, {1.1, 0.7, 0.2}));  // overlaps it
     if (k >= 2) place(m, {0.5 + 0.3 * k, {some(random), some(random), 1}, 37.0 * k, {1, -2, 3}});
     require_closed(m, "m");
     const double d = k < 2 ? 0.1 : 0.11;  // for k < 2 lines go through vertices
@@ -97,7 +90,7 @@ TEST_CASE("the points in a mesh are those that its surface winds around") {
 }
 
 TEST_CASE("a mesh is scaled, then turned about the origin, then moved, and its volume follows") {
-  TriangleMesh m = box({1, 0, 0}, {2, 1, 1});
+  TriangleMesh m = box_mesh({1, 0, 0}, {2, 1, 1});
   place(m, {2, {0, 0, 1}, 90, {10, 0, 0}});
   const auto [low, high] = box_of(m);
   CHECK(low == Double3{8, 2, 0});
@@ -109,27 +102,27 @@ TEST_CASE("a surface that is open, touches itself or is turned wrongly is refuse
   const auto said = [](const TriangleMesh& m) {
     return error_of([&] { require_closed(m, "m.stl"); }).substr(2);
   };
-  TriangleMesh open = box({0, 0, 0}, {1, 1, 1});
+  TriangleMesh open = box_mesh({0, 0, 0}, {1, 1, 1});
   open.triangle.pop_back();
   CHECK(said(open) ==
         "m.stl: is not closed: 3 edges have a triangle on one side only: [1, 1, 0] to [1, 0, 1], "
         "[1, 1, 0] to [1, 1, 1], [1, 0, 1] to [1, 1, 1]; close the surface, because a solid has an "
         "inside");
-  TriangleMesh turned = box({0, 0, 0}, {1, 1, 1});
+  TriangleMesh turned = box_mesh({0, 0, 0}, {1, 1, 1});
   std::swap(turned.triangle[0][0], turned.triangle[0][1]);
   CHECK(contains(said(turned),
                  "triangles that do not agree about the inside: the two at 3 edges turn"));
-  TriangleMesh out = box({0, 0, 0}, {1, 1, 1});
+  TriangleMesh out = box_mesh({0, 0, 0}, {1, 1, 1});
   for (auto& t : out.triangle) std::swap(t[0], t[1]);
   CHECK(contains(said(out), "m.stl: is inside out"));
-  TriangleMesh touching = box({0, 0, 0}, {1, 1, 1});
-  add(touching, box({1, 1, 0}, {2, 2, 1}));
+  TriangleMesh touching = box_mesh({0, 0, 0}, {1, 1, 1});
+  add(touching, box_mesh({1, 1, 0}, {2, 2, 1}));
   for (auto& t : touching.triangle)  // one edge for both
     for (auto& v : t) v = v == 8 ? 3 : v == 12 ? 7 : v;
   CHECK(contains(said(touching),
                  "m.stl: touches itself: 1 edge belongs to more than two triangles: [1, 1, 0] to "
                  "[1, 1, 1]"));
   CHECK(said({}) == "m.stl: has no triangles");
-  TriangleMesh flat = box({0, 0, 0}, {1, 1, 0});
+  TriangleMesh flat = box_mesh({0, 0, 0}, {1, 1, 0});
   CHECK(contains(said(flat), "encloses no volume"));
 }
