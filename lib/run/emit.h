@@ -40,8 +40,7 @@ class StartPoints {
   const Particles& of_file(std::size_t body) const { return of_files_[body]; }
   /// Frees the particles of a file.
   void drop_file(std::size_t body) { of_files_[body] = {}; }
-  /// Those of bodies, which were opened here, then those of motions, which read_linked_files() has
-  /// read.
+  /// Those of bodies, which were opened here, then those that read_linked_files() has read.
   const std::vector<SceneFile>& files() const { return files_; }
 
  private:

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "lib/run/motion_files.h"
 #include "lib/run/surface_files.h"
@@ -19,7 +21,11 @@ template <class AnyScene, class F>
 void for_each_file(AnyScene& s, F&& f) {
   for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
     const std::string name = "obstacles[" + std::to_string(k) + "]";
-    if (auto* surface = s.obstacles[k].surface_file()) f(*surface, name + ".path");
+    std::visit(
+        [&](auto& shape) {
+          if constexpr (requires { shape.surface; }) f(shape, name + ".path");
+        },
+        s.obstacles[k].shape);
     if (auto& m = s.obstacles[k].motion; m && m->kind == MotionKind::file)
       f(*m, name + ".motion.path");
   }
@@ -28,12 +34,12 @@ void for_each_file(AnyScene& s, F&& f) {
 }
 
 /// Where a file was read, and the hash of its bytes; empty before.
-std::pair<std::string, std::string> read_from(const obstacle_keys::SurfaceFile& f) {
-  return f.surface ? std::pair{f.surface->file(), f.surface->sha256()}
-                   : std::pair<std::string, std::string>();
-}
-std::pair<std::string, std::string> read_from(const auto& motion) {
-  return {motion.table.file, motion.table.sha256};
+std::pair<std::string, std::string> read_from(const auto& f) {
+  if constexpr (requires { f.surface; })
+    return f.surface ? std::pair{f.surface->file(), f.surface->sha256()}
+                     : std::pair<std::string, std::string>();
+  else
+    return {f.table.file, f.table.sha256};
 }
 
 }  // namespace
@@ -46,19 +52,17 @@ void read_linked_files(Scene& scene, const std::string& dir, bool auto_step) {
   for_each_file(scene, [&](auto& m, const std::string& name) {
     const std::string key = (m.place.text.empty() ? "" : m.place.text + ": ") + name,
                       file = (fs::path(dir) / m.path).string();
-    if constexpr (requires { m.surface; }) {
-      const Obstacle& o = scene.obstacles[std::stoul(name.substr(name.find('[') + 1))];
-      if (!std::holds_alternative<obstacle_keys::Mesh>(o.shape)) {
-        m.surface = read_heights(scene, m.translate, key, file);
-      } else {
-        std::shared_ptr<const SolidMesh>& mesh = meshes[file];
-        if (!mesh) mesh = read_surface(key, file);
-        m.surface = mesh;
-      }
-      surfaces = true;
+    using Linked = std::decay_t<decltype(m)>;
+    if constexpr (std::is_same_v<Linked, obstacle_keys::Heights>) {
+      m.surface = read_heights(scene, m.translate, key, file);
+    } else if constexpr (std::is_same_v<Linked, obstacle_keys::Mesh>) {
+      std::shared_ptr<const SolidMesh>& mesh = meshes[file];
+      if (!mesh) mesh = read_surface(key, file);
+      m.surface = mesh;
     } else {
       read_motion(scene, m, key, file);
     }
+    if constexpr (requires { m.surface; }) surfaces = true;
   });
   if (surfaces) {  // rules that depend on the extents of obstacles
     PlacedScene placed;

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include "lib/program/obstacles.h"
+#include "lib/program/solid_maps.h"
+#include "lib/scene/body_box.h"
 
 namespace pbf::run_module {
 namespace {
@@ -20,11 +22,7 @@ Thin thin_part(const Scene& s, const Obstacle& o, const Solid<double>& solid) {
   const TriangleMesh& mesh = o.surface_file()->surface->mesh();
   const Double3 middle = o.surface_file()->surface->middle(), from = s.origin();
   const double h = s.h(), by = o.meters() / h;
-  const auto is_in_domain = [&](const Double3& x) {
-    for (std::size_t a = 0; a < 3; ++a)
-      if (!(x[a] >= s.domain.min[a] && x[a] <= s.domain.max[a])) return false;
-    return true;
-  };
+  const BodyBox domain{s.domain.min, s.domain.max};
   double all = 0, thin = 0;
   Thin out;
   for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
@@ -36,7 +34,7 @@ Thin thin_part(const Scene& s, const Obstacle& o, const Solid<double>& solid) {
     const Vec3<double> at = turned_back<3>(solid, Vec3<double>{place[0], place[1], place[2]});
     const Vec3<double> x = solid.center + at;
     const Double3 in_scene{from[0] + h * x.x, from[1] + h * x.y, from[2] + h * x.z};
-    if (!is_in_domain(in_scene)) continue;
+    if (!domain.holds(in_scene, 0)) continue;
     all += area;
     if (distance<3>(solid, x) < -kInside) continue;
     if (thin == 0) out.first = in_scene;
@@ -49,9 +47,7 @@ Thin thin_part(const Scene& s, const Obstacle& o, const Solid<double>& solid) {
 }  // namespace
 
 std::string thin_text(const Scene& scene) {
-  bool any = false;
-  for (const Obstacle& o : scene.obstacles) any = any || o.surface_file();
-  if (!any) return "";
+  if (!has_maps(scene)) return "";
   const std::vector<Solid<double>> solids = solids_of(scene);
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     const Obstacle& o = scene.obstacles[k];
@@ -61,8 +57,7 @@ std::string thin_text(const Scene& scene) {
     return fmt::format(
         "obstacles[{}] ({}) is thinner than half the smoothing length ({:.3g} m) below {:.2g} % of "
         "its surface, at ({:.3g}, {:.3g}, {:.3g}) for one: fluid may pass there; thicken it, or "
-        "lower "
-        "fluid.spacing",
+        "lower fluid.spacing",
         k, o.name, 0.5 * scene.h(), 100 * thin.part, thin.first[0], thin.first[1], thin.first[2]);
   }
   return "";

@@ -31,7 +31,7 @@ StepRule step_rule(const Scene& scene);
 double fitted_step(const Scene& scene, double longest);
 
 /// The step from gravity and the velocities of bodies, s; 0 if nothing moves the fluid. For
-/// motions, whose tables are read later, see choose_step_of_motions() (lib/run/linked_files.h).
+/// motions, whose tables are read later, see choose_step_of_motions() (lib/run/motion_files.h).
 double auto_step(const Scene& scene);
 
 }  // namespace pbf::scene_module

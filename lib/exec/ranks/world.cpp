@@ -34,9 +34,15 @@ void each_motion(AnyScene& s, const F& f) {
 
 void add(Packer& p, const Scene& s) {
   p.add(resolved_yaml(s));
+  // Surfaces that obstacles share are sent once, and remain shared.
+  std::vector<const SolidMesh*> sent;
   for (const Obstacle& o : s.obstacles)
     if (const auto* f = o.surface_file()) {
       const SolidMesh& mesh = *f->surface;
+      const auto number = std::size_t(std::ranges::find(sent, &mesh) - sent.begin());
+      p.add(number);
+      if (number < sent.size()) continue;
+      sent.push_back(&mesh);
       p.add(mesh.file()).add(mesh.sha256()).add(mesh.mesh().vertex).add(mesh.mesh().triangle);
     }
   each_motion(s, [&](const auto& m) {
@@ -47,13 +53,19 @@ void add(Packer& p, const Scene& s) {
 }
 Scene take_scene(Unpacker& from) {
   Scene s = parse_stored_scene(from.take<std::string>(), "rank 0", {});
+  std::vector<std::shared_ptr<const SolidMesh>> taken;
   for (Obstacle& o : s.obstacles)
     if (auto* f = o.surface_file()) {
+      if (const auto number = from.take<std::size_t>(); number < taken.size()) {
+        f->surface = taken[number];
+        continue;
+      }
       auto file = from.take<std::string>(), sha256 = from.take<std::string>();
       TriangleMesh mesh;
       from.take(mesh.vertex), from.take(mesh.triangle);
       f->surface =
           std::make_shared<const SolidMesh>(std::move(file), std::move(sha256), std::move(mesh));
+      taken.push_back(f->surface);
     }
   each_motion(s, [&](auto& m) {
     MotionTable& t = m.table;
