@@ -54,6 +54,7 @@ struct FlowPass {
   double update_dt;  ///< s
 
   PBF_HD void operator()(int i) const {
+    if (id[i] < 0) return;  // it leaves in the next sort
     const Vec3<Real> x = xyz(position[i]);
     unsigned now = 0;
     for (int k = 0; k < gates; ++k) now |= unsigned(beyond(gate[k], x)) << k;

@@ -28,10 +28,12 @@ inline constexpr int kImage = 1 << 30;
 PBF_HD constexpr bool is_image(int id) { return id >= kImage; }
 PBF_HD constexpr int particle_of(int id) { return id & ~kImage; }
 
-/// Rows first ... last - 1, without those of images if `id` is not null.
+/// Rows first ... last - 1, without those of images if `id` is not null. If `state` is not null,
+/// its number of rows ends them, which is at most `last` and which only a device knows.
 struct RowRange {
   int first, last;
   const int* id = nullptr;
+  const RowState* state = nullptr;
   PBF_HD bool leaves_out(int i) const { return id && is_image(id[i]); }
 };
 

@@ -60,7 +60,7 @@ struct SolidBoundary : Box<Real> {
     double deepest = Box<Real>::penetration(x);
     const Vec3<Real> at{Real(x[0]), Real(x[1]), Real(x[2])};
     if (!obstacles || !bounds.has(at)) return deepest;
-    for (int k = 0; k < solid_scene->solids; ++k) {
+    for (int k = 0; k < solid_scene->obstacles; ++k) {
       const PosedSolid<Real>& s = solid_scene->solid[k];
       if (!s.bounds.has(at)) continue;
       deepest = max2(deepest, -double(solid_scene->flat ? distance<2>(s.solid, at)

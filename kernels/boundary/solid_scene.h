@@ -26,16 +26,29 @@ struct SolidScene {
   const PosedSolid<Real>* solid = nullptr;
   const Solid<Real>* before = nullptr;  ///< poses at the start of the step; null: as `solid`
   int solids = 0;
+  /// Of them, which come first. Then two for each emitter: its casing and, in that, the bore, which
+  /// is no solid where fluid is held (kernels/emission.h).
+  int obstacles = 0;
   bool flat = false;  ///< two dimensions
   LoadBook<Real> loads{};
+
+  PBF_HD bool is_bore(int k) const { return k >= obstacles && (k - obstacles) % 2 == 1; }
 };
+
+template <class Real>
+PBF_HD bool is_in(const SolidScene<Real>& s, int k, Vec3<Real> x) {
+  return (s.flat ? distance<2>(s.solid[k].solid, x) : distance<3>(s.solid[k].solid, x)) < Real(0);
+}
 
 /// `start`: the path begins with the step, when moving solids were at SolidScene::before.
 template <class Real>
 PBF_HD PathEnd<Real> keep_out(const SolidScene<Real>& s, bool start, int k, Vec3<Real> from,
                               Vec3<Real> to) {
   const PosedSolid<Real>& placed = s.solid[k];
-  if (!placed.bounds.meets(from, to)) return {to};
+  if (!placed.bounds.meets(from, to) || s.is_bore(k)) return {to};
+  // What is held in a bore, or leaves it, is not kept out. Nothing else is there:
+  // Pipes::kept_out().
+  if (k >= s.obstacles && is_in(s, k + 1, from)) return {to};
   const Solid<Real>& before = start && s.before ? s.before[k] : placed.solid;
   return s.flat ? keep_out<2>(before, placed.solid, from, to)
                 : keep_out<3>(before, placed.solid, from, to);
@@ -84,12 +97,17 @@ PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
   return dot(way, way) <= most * most;
 }
 
-/// Calls f(k, solid_term) for the obstacles near x. step: of a particle that they push.
+/// Calls f(k, solid_term) for the solids near x; that of a bore is negative. step: of a particle
+/// that they push.
 template <Smoothing S, class Real, class Step, class F>
 PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const Step& step, F&& f) {
-  for (int k = 0; k < s.solids; ++k)
-    if (s.solid[k].bounds.has(x))
-      f(k, solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range));
+  for (int k = 0; k < s.solids; ++k) {
+    if (!s.solid[k].bounds.has(x)) continue;
+    SolidTerm<Real> term =
+        solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range);
+    if (s.is_bore(k)) term = {-term.share, Real(-1) * term.gradient};
+    f(k, term);
+  }
 }
 
 /// Solids are combined with the walls by inclusion and exclusion and do not overlap each other:
@@ -121,7 +139,7 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
                                              int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
-    if (booked) s.loads.add(wall, i, target, way, start);
+    if (booked && wall < load_row_of_solid(s.obstacles)) s.loads.add(wall, i, target, way, start);
   };
   const auto inside_walls = [&](Vec3<Real> x) {
     const Vec3<Real> in = s.walls.path_end(from, x), way = in - x;
@@ -166,7 +184,7 @@ PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, cons
   if (share > Real(0) && share < Real(1)) {
     const Real left = s.walls.scale - s.walls.template term<S>(place).density;
     for_solids_at<S>(s, x, step, [&](int k, const SolidTerm<Real>& one) {
-      s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
+      if (k < s.obstacles) s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
     });
   }
   const Real free = factor * max2(Real(1) - share, Real(0));

@@ -27,8 +27,8 @@ struct Grain {
 };
 
 struct ReadingColumn {
-  const char* kind;  ///< "load", "dissipation", or the kind of a gauge
-  std::string of;    ///< wall, obstacle, cause or gauge
+  const char* kind;  ///< "load", "dissipation", "emitter", "sink", or the kind of a gauge
+  std::string of;    ///< wall, obstacle, cause, emitter, sink or gauge
   const char* name;  ///< "force"; empty: the gauge's own data
   const char* unit;
   std::string place{};  ///< "x = 0.5 m"; empty for loads
@@ -42,10 +42,10 @@ struct ReadingColumn {
 };
 
 /// Loads of the walls in the order x_min, x_max ..., then of obstacles, then what took energy from
-/// the motion, then gauges, then the poses of moving obstacles. Readings are the numbers of the
-/// columns of a series, one behind the other. Loads are along the scene's axes, a torque is about
-/// the present middle. A velocity is NaN if no particle is within h. A mean over an interval of
-/// length 0 is 0.
+/// the motion, then emitters and sinks, then gauges, then the poses of moving obstacles. Readings
+/// are the numbers of the columns of a series, one behind the other. Loads are along the scene's
+/// axes, a torque is about the present middle. A velocity is NaN if no particle is within h. A mean
+/// over an interval of length 0 is 0.
 std::vector<ReadingColumn> reading_columns(const Scene& scene, const Plan& plan);
 
 /// Calls f(column, component, number) for each number of a series in their order.

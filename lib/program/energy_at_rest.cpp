@@ -89,7 +89,8 @@ Filled filled(const Vessel& v, const double (&part)[3], const std::vector<Solid<
 double energy_at_rest(const Scene& scene, const Plan& plan) {
   const Vessel v = vessel_of(scene, plan);
   const double most = std::max({v.pull[0], v.pull[1], v.pull[2]});
-  if (!v.holds || !(most > 0)) return std::numeric_limits<double>::quiet_NaN();
+  if (!v.holds || !(most > 0) || comes_and_goes(scene))
+    return std::numeric_limits<double>::quiet_NaN();
   const double h = scene.h(), mass = plan.mass * double(plan.particles);
   const double volume = mass / (scene.fluid.rest_density * h * h * h);
   // First over the whole box, then over the part of it that is filled.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 
 namespace pbf::program_module {
 
@@ -35,6 +36,8 @@ struct NoMemory {
   void forget(auto&) {}
   /// The most particles that these steps may add, for features with `changes_rows`.
   std::int64_t new_rows(auto&, const StepRange&) { return 0; }
+  /// Which particle had no row, "" or "...; ": for a feature with `changes_rows`, if one had none.
+  std::string no_row_text(auto&) { return ""; }
   /// Tables of the steps to come. Called before each batch, also before a repeated one.
   void before_steps(auto&, const StepRange&) {}
 };

@@ -7,6 +7,7 @@
 #include "lib/program/features/confinement.h"
 #include "lib/program/features/constraint.h"
 #include "lib/program/features/correction.h"
+#include "lib/program/features/emission.h"
 #include "lib/program/features/gauges.h"
 #include "lib/program/features/hyperviscosity.h"
 #include "lib/program/features/levels.h"
@@ -41,8 +42,9 @@ struct FeatureList {
   using With = FeatureList<Fs..., More...>;
 };
 
-using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,
-                             VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
+using Features =
+    FeatureList<Motion, NearSolids, Constraint, Levels, Correction, Emission, XsphViscosity,
+                VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::PBF_VARIANT

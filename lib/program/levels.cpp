@@ -44,6 +44,7 @@ const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
   if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
   if (!s.domain.periodic.empty()) return "the scene has periodic axes (domain.periodic)";
+  if (!s.emitters.empty()) return "the scene has emitters";
   if (has_pressure_on_wall(s)) return "the scene has a pressure gauge on a wall";
   if (s.solver.levels == LevelsMode::automatic &&
       !(length(s.gravity) > 0 && fluid_layers(s) >= kDeep))

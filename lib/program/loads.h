@@ -26,7 +26,9 @@ inline bool has_wall_loads(const Scene& scene) {
 }
 
 /// Whether the boundary is more than plain walls.
-inline bool has_solids(const Scene& scene) { return !scene.obstacles.empty() || has_loads(scene); }
+inline bool has_solids(const Scene& scene) {
+  return !scene.obstacles.empty() || !scene.emitters.empty() || has_loads(scene);
+}
 
 // Rows of sums and of loads: those of the six faces along the internal axes (0 for open ones), then
 // those of all obstacles, then those of the gauges on them.

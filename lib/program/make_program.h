@@ -7,7 +7,8 @@ namespace pbf::program_module {
 
 /// The passes of a scene by their place in an update, and what is known of all passes.
 struct PassSet {
-  Steps at_start, before_sort, with_lists, with_all_lists, in_iteration, behind, at_end, at_reading;
+  Steps at_start, before_sort, behind_predict, with_lists, with_all_lists, in_iteration, behind,
+      at_end, at_reading;
   Steps between;          ///< behind an update ...
   int between_every = 0;  ///< ... whose number is a multiple of this
   std::vector<LeftOut> without;
@@ -31,6 +32,8 @@ struct Builder : PassSet {
   /// rows that leave (kernels/row_state.h). Rows near solids: NearRows::mark_near() for each new
   /// row.
   void rows(auto pass) { before_sort.push_back(step_of(pass)); }
+  /// The pass runs after each prediction, before the sort.
+  void predicted(auto pass) { behind_predict.push_back(step_of(pass)); }
   /// The pass runs whenever lists are made; with `updates_alone` not for a measurement.
   void lists(auto pass, bool updates_alone = false) {
     with_lists.push_back(step_of(pass));

@@ -138,7 +138,10 @@ void Then<A, B>::list(const Scene& scene, std::vector<AccessInfo>& to) {
   }
 }
 
-inline bool changes_rows(const Scene& s) { return s.capacity > 0; }
+/// Whether particles come or go.
+inline bool changes_rows(const Scene& s) {
+  return s.capacity > 0 || !s.emitters.empty() || !s.sinks.empty();
+}
 
 /// The flags that pass P declares for a field; 0: none.
 template <class P, class Field>

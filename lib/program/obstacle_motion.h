@@ -91,12 +91,17 @@ PosedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& ne
 template <class Real>
 std::vector<PosedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
                                         const Box<Real>& walls, double time) {
-  if (!has_moving_obstacles(scene)) return placed_solids(plan.solids, walls);
+  const std::vector<PosedSolid<Real>> casings = placed_solids(plan.casings, walls);
+  const auto with_casings = [&](std::vector<PosedSolid<Real>> all) {
+    all.insert(all.end(), casings.begin(), casings.end());
+    return all;
+  };
+  if (!has_moving_obstacles(scene)) return with_casings(placed_solids(plan.solids, walls));
   const auto now = solids_of(scene, plan.axes, time);
   const auto next = solids_of(scene, plan.axes, time + scene.time.step / plan.substeps);
   std::vector<PosedSolid<Real>> all;
   for (std::size_t k = 0; k < now.size(); ++k) all.push_back(placed_before(now[k], next[k], walls));
-  return all;
+  return with_casings(std::move(all));
 }
 
 /// The rows of these steps.
@@ -154,7 +159,11 @@ RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Re
   std::vector<PosedSolid<Real>> all = placed_at(scene, plan, walls, 0);
   std::vector<std::size_t> moving;
   for (std::size_t k = 0; k < all.size(); ++k)
-    scene.obstacles[k].motion ? moving.push_back(k) : run.standing.push_back(plan.solids[k]);
+    if (k < scene.obstacles.size() && scene.obstacles[k].motion)
+      moving.push_back(k);
+    else
+      run.standing.push_back(k < plan.solids.size() ? plan.solids[k]
+                                                    : plan.casings[k - plan.solids.size()]);
   if (!moving.empty()) {
     constexpr int samples = 512;
     // Upper bound of a displacement between two samples and in the step after the last one.

@@ -1,5 +1,6 @@
 #include "lib/program/plan.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -37,7 +38,8 @@ void plan_grid(Plan& plan, const Scene& scene) {
     return (std::floor(2 * along(0, edge) / edge) + 1) / 2 *
            (std::floor(along(1, edge) / edge) + 1) * (std::floor(along(2, edge) / edge) + 1);
   };
-  const double limit = std::min(double(plan.particles) + 65536, 2e8);
+  const auto most = double(has_emitters(s) ? plan.most_particles() : plan.particles);
+  const double limit = std::min(most + 65536, 2e8);
   plan.cell_edge = 1;
   while (number(plan.cell_edge) > limit) {
     const double over = number(plan.cell_edge) / limit;
@@ -66,6 +68,23 @@ std::int64_t image_rows(const Scene& s, std::int64_t particles) {
                                          "whose images are of a fixed number of particles");
   const double at_rest = (outer - inner) * std::pow(s.fluid.smoothing_ratio, s.dimensions);
   return std::int64_t(std::min(2 * at_rest + 256, double(particles) * double(sets - 1)));
+}
+
+/// Rows of particles: of all that may be at a time. Throws Error(bad_input) for a capacity that the
+/// start exceeds, and for more ids than there are.
+std::int64_t most_rows(const Scene& s, const Plan& plan) {
+  if (!has_emitters(s)) return std::max(plan.particles, s.capacity);
+  const std::int64_t all = most_particles_of(s, plan.emission);
+  if (all >= kImage)
+    throw Error(ExitCode::bad_input,
+                fmt::format("the emitters of scene {} bring {} particles, at most {} are possible; "
+                            "raise fluid.spacing, or lower speed or time.end",
+                            s.name, all, kImage - 1));
+  if (s.capacity > 0 && s.capacity < plan.particles)
+    throw Error(ExitCode::bad_input,
+                fmt::format("capacity: is {}, below the {} particles at the start; raise it",
+                            s.capacity, plan.particles));
+  return s.capacity > 0 ? std::min(s.capacity, all) : all;
 }
 
 /// The steps of a Richardson iteration with the Chebyshev polynomial on [a, b] as error polynomial:
@@ -155,8 +174,19 @@ double table_bytes(double columns, double rows) {
   return columns * (2.3e4 + std::floor(rows / 1024) * 1024 * 8);
 }
 
+/// Of a frame, if no sink takes any.
+double mean_particles(const Plan& plan, const Scene& s) {
+  if (!has_emitters(s)) return double(plan.most_particles());
+  constexpr int kTimes = 256;
+  double sum = 0;
+  for (int k = 0; k <= kTimes; ++k)
+    sum += std::min(double(plan.emission.particles(s.time.end * k / kTimes)),
+                    double(plan.most_particles()));
+  return sum / (kTimes + 1);
+}
+
 void plan_files(Plan& plan, const Scene& s) {
-  const auto n = double(plan.most_particles());
+  const auto n = double(plan.most_particles()), mean = mean_particles(plan, s);
   const auto add = [&](const char* name, double number, double bytes,
                        const std::string& note = {}) {
     plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
@@ -171,11 +201,11 @@ void plan_files(Plan& plan, const Scene& s) {
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double frames = double(schedule.frames_until(all));
-    if (changes_rows(s)) row += 4;  // ids of each frame; every frame takes the space of the largest
+    if (changes_rows(s)) row += 4;  // ids of each frame
     // Ids and vertex numbers are stored once. Large chunks of a frame fill whole pages. gzip makes
     // the data 1.45 times smaller (measured).
     const double bytes =
-        (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) +
+        (frames * row * mean + 12 * n) / (s.output->compression == Compression::gzip ? 1.45 : 1) +
         frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +
         table_bytes(log_columns(plan, s), double(schedule.measures_until(all))) +
         table_bytes(gauge_columns(plan), double(schedule.gauges_until(all)));
@@ -203,7 +233,8 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
   plan.particles = particles;
   plan.images = image_rows(s, particles);
-  plan.capacity = std::max(particles, s.capacity) + plan.images;
+  plan.emission = plan_emission(s, particles - particles_in_pipes(s));
+  plan.capacity = most_rows(s, plan) + plan.images;
   plan.start = std::move(start);
   plan.mass = s.particle_mass();
   plan.dissipation_unit = 1 / (s.time.step * s.time.step);
@@ -231,6 +262,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
   plan.solids = solids_of(s, plan.axes);
+  plan.casings = casings_and_bores(s, plan.axes);
   plan.gauges = plan_gauges(s, plan);
   plan.columns = reading_columns(s, plan);
   if (has_levels(s))

@@ -9,6 +9,7 @@
 #include "kernels/axes.h"
 #include "lib/base/json.h"
 #include "lib/program/column.h"
+#include "lib/program/emission.h"
 #include "lib/program/gauges.h"
 #include "lib/program/hyperviscosity.h"
 #include "lib/program/levels.h"
@@ -60,8 +61,10 @@ struct Plan {
   double mass = 0;  ///< kg, of one particle
   double dissipation_unit = 1;  ///< h^2/s^2 (kernels/dissipation.h); the same for all steps
   LevelPlan levels;
-  std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
+  std::vector<Solid<double>> solids;   ///< of obstacles, in internal axes; lib/program/obstacles.h
+  std::vector<Solid<double>> casings;  ///< and a bore for each, of emitters; lib/program/emission.h
   GaugePlan gauges;
+  EmissionPlan emission;
   std::vector<ReadingColumn> columns;  ///< of readings: reading_columns()
   Program program;
   MemoryPlan memory;

@@ -42,6 +42,23 @@ Json memory_json(const Plan& plan, const Scene& scene) {
   return out;
 }
 
+/// One object per emitter: its columns, and at its highest speed what it brings.
+Json emission_json(const Plan& plan, const Scene& scene) {
+  Json out = Json::array();
+  for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
+    const PlannedNozzle& n = plan.emission.nozzles[e];
+    const double rate = fastest_of(scene.emitters[e]) * double(n.columns) / scene.fluid.spacing;
+    out.push_back({{"name", scene.emitters[e].name},
+                   {"columns", n.columns},
+                   {"area_m2", n.area},
+                   {"particles_per_s", rate},
+                   {"kg_per_s", rate * plan.mass},
+                   {"particles", n.columns * plan.emission.released(e, scene.time.end)},
+                   {"pipe_m", n.place.depth}});
+  }
+  return out;
+}
+
 }  // namespace
 
 Json plan_json(const Plan& plan, const Scene& s) {
@@ -60,6 +77,8 @@ Json plan_json(const Plan& plan, const Scene& s) {
   const PlanTotals totals = plan_totals(plan, s);
   return {{"scene", s.name},
           {"particles", plan.particles},
+          {"most_particles", plan.most_particles()},
+          {"emitters", emission_json(plan, s)},
           {"spacing_m", s.fluid.spacing},
           {"h_m", s.h()},
           {"end_s", totals.end},

@@ -146,9 +146,11 @@ PlanTotals plan_totals(const Plan& plan, const Scene& s) {
 
 std::string plan_summary(const Plan& plan, const Scene& s, const std::string& run_time) {
   const PlanTotals totals = plan_totals(plan, s);
+  const std::string most =
+      comes_and_goes(s) ? fmt::format(" at the start, at most {}", plan.most_particles()) : "";
   std::string out =
-      fmt::format("scene {}: {} particles, spacing d = {:g} m, smoothing length h = {:g} m\n",
-                  s.name, plan.particles, s.fluid.spacing, s.h());
+      fmt::format("scene {}: {} particles{}, spacing d = {:g} m, smoothing length h = {:g} m\n",
+                  s.name, plan.particles, most, s.fluid.spacing, s.h());
   out += "  time      " + time_line(plan, s, totals) + "\n";
   if (!run_time.empty()) out += "  run time  " + run_time + "\n";
   out += "  memory    " + memory_line(plan, s, totals) + "\n";
@@ -156,8 +158,8 @@ std::string plan_summary(const Plan& plan, const Scene& s, const std::string& ru
 }
 
 std::string plan_details(const Plan& plan, const Scene& s) {
-  std::string out =
-      files_part(plan, s) + memory_part(plan, s) + passes_part(plan, s) + grid_part(plan, s);
+  std::string out = emission_text(s, plan) + files_part(plan, s) + memory_part(plan, s) +
+                    passes_part(plan, s) + grid_part(plan, s);
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;

@@ -46,6 +46,7 @@ void add_substeps(Steps& to, const PassSet& b, int iterations, int repeats, int 
     to.insert(to.end(), b.at_start.begin(), b.at_start.end());
     if (s == 0) to.insert(to.end(), b.before_sort.begin(), b.before_sort.end());
     to.push_back(b.predict);
+    to.insert(to.end(), b.behind_predict.begin(), b.behind_predict.end());
     if (s == 0) {
       to.insert(to.end(), {b.sort, b.make_lists});
       to.insert(to.end(), b.with_lists.begin(), b.with_lists.end());
@@ -208,7 +209,8 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
     b.at_start.clear(), b.before_sort.clear(), b.behind.clear(), b.at_end.clear(),
         b.between.clear();
   Steps middle;
-  if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
+  if (b.in_iteration.empty() && b.behind.empty() &&
+      b.before_sort.empty()) {  // no pairs: particles only move
     for (int s = 0; s < shape.substeps; ++s) {
       middle.insert(middle.end(), b.at_start.begin(), b.at_start.end());
       middle.push_back(b.predict);
@@ -224,7 +226,8 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
   const Steps end = b.behind + b.at_end;
   p.update = middle + end;
   // The passes up to the first sort may be fused with the end of the previous update.
-  const std::size_t order = b.at_start.size() + b.before_sort.size() + 1;  // index of the sort
+  // Index of the sort.
+  const std::size_t order = b.at_start.size() + b.before_sort.size() + 1 + b.behind_predict.size();
   const bool pairs = p.update.size() > order + 1 && p.update[order].index == b.sort.index;
   const auto begin = middle.begin() + (pairs ? std::ptrdiff_t(order + 1) : 0);
   const Steps head(middle.begin(), begin);

@@ -56,6 +56,19 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
                    measures,
                    {unit * double(plan.particles)}});
   }
+  for (std::size_t e = 0; e < s.emitters.size(); ++e) {
+    const std::string& of = s.emitters[e].name;
+    const auto layer = double(plan.emission.nozzles[e].columns);
+    all.push_back({"emitter", of, "particles", "1", "", total, 1, measures, {layer}});
+    all.push_back({"emitter", of, "mass", "kg", "", total, 1, measures, {layer * plan.mass}});
+    all.push_back({"emitter", of, "energy", "J", "", total, 1, measures});
+  }
+  for (const Sink& k : s.sinks) {
+    all.push_back({"sink", k.name, "particles", "1", "", total, 1, measures, {1}});
+    all.push_back({"sink", k.name, "mass", "kg", "", total, 1, measures, {plan.mass}});
+    all.push_back({"sink", k.name, "momentum", "kg m/s", "", total, 3, measures});
+    all.push_back({"sink", k.name, "energy", "J", "", total, 1, measures});
+  }
   all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
   for (const Obstacle& o : s.obstacles) {
     if (!o.motion) continue;

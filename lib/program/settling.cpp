@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lib/program/motion.h"
 #include "lib/program/schedule.h"
@@ -35,6 +36,10 @@ Scene settling_scene(const Scene& scene) {
   }
   s.domain.loads = false;
   s.gauges.clear();
+  // What is in the pipes stays there.
+  for (Emitter& e : s.emitters) e.start = std::numeric_limits<double>::infinity();
+  s.sinks.clear();
+  s.capacity = 0;
   s.settle.reset();
   s.guard.reset();
   s.output.reset();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/program/motion.h"
+#include "lib/scene/nozzle.h"
 
 namespace pbf::program_module {
 namespace {
@@ -29,6 +30,7 @@ double way_per_update(const Scene& s) {
   double fastest = 0;
   for (const Body& b : s.bodies)
     fastest = std::max(fastest, std::hypot(b.velocity[0], b.velocity[1], b.velocity[2]));
+  fastest = std::max(fastest, fastest_emitter(s, 0, s.time.end));
   if (has_moving_obstacles(s)) fastest = std::max(fastest, fastest_obstacle(s, 0, s.time.end));
   return (fall_speed(s) + fastest) * s.time.step / s.h();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/program/emission.h"
 #include "lib/program/motion.h"
 #include "lib/program/obstacles.h"
 #include "lib/scene/body_box.h"
@@ -218,6 +219,7 @@ std::vector<Solid<double>> solids_in_metres(const Scene& scene, double time) {
   const double h = scene.h();
   const auto [x, y, z] = scene.origin();
   std::vector<Solid<double>> solids = solids_of(scene, time);
+  for (const Solid<double>& casing : casings_of(scene)) solids.push_back(casing);
   for (Solid<double>& s : solids) {
     s.center = Vec3<double>{x, y, z} + h * s.center;
     s.shape = s.shape.with(
@@ -244,7 +246,8 @@ Reach reach_of(const Scene& scene, const Double3& up, std::int64_t particles) {
   }
   const double spread = volume > 0 ? std::max(0.0, energy / volume) : 0;
 
-  const double obstacle = fastest_obstacle(scene, 0, scene.time.end);
+  const double obstacle = std::max(fastest_obstacle(scene, 0, scene.time.end),
+                                   fastest_emitter(scene, 0, scene.time.end));
   const Double3 box = scene.domain.max - scene.domain.min;
   const double tank = 2 * greatest_sway(scene, 0, scene.time.end) *
                       std::max({box[0], scene.plane() ? 0.0 : box[1], box[2]});

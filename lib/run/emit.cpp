@@ -8,6 +8,7 @@
 #include "lib/base/error.h"
 #include "lib/io/mesh_file.h"
 #include "lib/io/particle_file.h"
+#include "lib/program/emission.h"
 #include "lib/program/obstacles.h"
 #include "lib/run/linked_files.h"
 #include "lib/scene/number.h"
@@ -95,7 +96,7 @@ void refuse_velocity_along_y(const Scene& scene, std::size_t body, const std::ve
                     "give dimensions: 3");
 }
 
-/// Positions that obstacles leave free: at least 0.4 spacings away from every obstacle.
+/// Positions that obstacles and casings of emitters leave free: at least 0.4 spacings away.
 class FreePlaces {
  public:
   explicit FreePlaces(const Scene& scene)
@@ -103,7 +104,9 @@ class FreePlaces {
         origin_(scene.origin()),
         plane_(scene.plane()),
         h_(scene.h()),
-        least_(least_distance(scene) / scene.h()) {}
+        least_(least_distance(scene) / scene.h()) {
+    for (const Solid<double>& casing : casings_of(scene)) solids_.push_back(casing);
+  }
   bool all() const { return solids_.empty(); }
   bool has(Double3 x) const {
     if (plane_) x[1] = *plane_;
@@ -169,6 +172,7 @@ Particles each_particle(StartPoints& points, bool last, const Take& take) {
     if (!free.all()) all.in_obstacles.push_back(dropped);
     into.end(all);
   }
+  for_each_in_pipes(scene, take);
   return all;
 }
 
@@ -199,6 +203,7 @@ std::int64_t count_particles(const StartPoints& points) {
     sum += scene.bodies[b].from_file()
                ? double(points.of_file(b).size())
                : lattice_count(scene.bodies[b], scene.fluid.spacing, scene.plane());
+  sum += double(particles_in_pipes(scene));
   if (sum < 1)
     bad_input("bodies", std::string("the scene has 0 particles") +
                             (free.all() ? "; add a body or lower fluid.spacing"

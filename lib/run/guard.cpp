@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/emission.h"
 #include "lib/program/motion.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
@@ -12,6 +13,10 @@ namespace pbf::run_module {
 namespace {
 
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
+/// The mass at a measurement; those of earlier versions have no number of particles.
+double mass_of(const Plan& plan, const Diagnostics& m) {
+  return m.particles > 0 ? plan.mass * double(m.particles) : mass_of(plan);
+}
 
 constexpr double kMayGain = 0.1;  // share of the energy scale that a run may gain
 
@@ -24,7 +29,9 @@ double longest_edge(const Scene& s) {
 /// Bound on the speed that prescribed motions can give the fluid, m/s.
 double motion_speed(const Scene& s) {
   const double pull = greatest_pull(s, 0, s.time.end) - length(s.gravity);
-  return 2 * fastest_obstacle(s, 0, s.time.end) + std::sqrt(2 * pull * longest_edge(s) * s.h());
+  const double fastest =
+      std::max(fastest_obstacle(s, 0, s.time.end), fastest_emitter(s, 0, s.time.end));
+  return 2 * fastest + std::sqrt(2 * pull * longest_edge(s) * s.h());
 }
 
 /// The speed of a particle that moves by h in a substep of level 0, m/s.
@@ -36,8 +43,9 @@ double total_energy(const Diagnostics& m) { return m.kinetic_energy + m.potentia
 
 double energy_scale(const Diagnostics& m, const Scene& s, const Plan& plan) {
   double together = 0;
-  for (const double p : m.momentum) together += p * p / (2 * mass_of(plan));
-  return std::max(m.kinetic_energy - together, 0.0) + energy_of_height(m, s, mass_of(plan));
+  const double mass = mass_of(plan, m);
+  for (const double p : m.momentum) together += p * p / (2 * mass);
+  return std::max(m.kinetic_energy - together, 0.0) + energy_of_height(m, s, mass);
 }
 
 double energy_of_height(const Diagnostics& m, const Scene& s, double mass) {

@@ -31,6 +31,8 @@ void for_each_file(AnyScene& s, F&& f) {
   }
   if (auto& m = s.tank_motion; m && m->kind == TankMotionKind::file)
     f(*m, std::string("tank_motion.path"));
+  for (std::size_t k = 0; k < s.emitters.size(); ++k)
+    if (auto& e = s.emitters[k]; !e.path.empty()) f(e, "emitters[" + std::to_string(k) + "].path");
 }
 
 /// Where a file was read, and the hash of its bytes; empty before.
@@ -46,7 +48,7 @@ std::pair<std::string, std::string> read_from(const auto& f) {
 
 void read_linked_files(Scene& scene, const std::string& dir, bool auto_step) {
   std::map<std::string, std::shared_ptr<const SolidMesh>> meshes;  // of several obstacles
-  bool surfaces = false;
+  bool more_rules = false;  // that depend on the extents of obstacles and the speeds of emitters
   for (Obstacle& o : scene.obstacles)
     if (auto* f = o.surface_file()) f->surface.reset();
   for_each_file(scene, [&](auto& m, const std::string& name) {
@@ -62,9 +64,9 @@ void read_linked_files(Scene& scene, const std::string& dir, bool auto_step) {
     } else {
       read_motion(scene, m, key, file);
     }
-    if constexpr (requires { m.surface; }) surfaces = true;
+    if constexpr (requires { m.surface; } || std::is_same_v<Linked, Emitter>) more_rules = true;
   });
-  if (surfaces) {  // rules that depend on the extents of obstacles
+  if (more_rules) {
     PlacedScene placed;
     placed.scene = scene;
     Problems problems;

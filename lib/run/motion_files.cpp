@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/io/csv.h"
 #include "lib/program/motion.h"
 #include "lib/scene/auto_step.h"
@@ -24,7 +25,7 @@ class Reader {
       : s_(scene), key_(std::move(key)), file_(std::move(file)) {}
 
   /// `headers`: the allowed ones.
-  MotionTable read(const std::vector<std::string>& headers) {
+  MotionTable read(const std::vector<std::string>& headers) const {
     MotionTable t;
     const std::vector<CsvRow> rows = all_rows(t.sha256);
     std::string header;
@@ -33,7 +34,7 @@ class Reader {
     if (std::ranges::find(headers, header) == headers.end())
       fail(rows.empty() ? file_ : rows[0].where,
            (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
-               headers[0] + " or " + headers[1]);
+               joined(headers, " or "));
     t.file = fs::absolute(file_).string();
     t.columns = int(rows[0].cells.size()) - 1;
     for (std::size_t r = 1; r < rows.size(); ++r) {
@@ -50,18 +51,34 @@ class Reader {
       t.line.push_back(rows[r].line);
     }
     if (t.time.size() < 2) fail(file_, "needs at least two rows of numbers below the header");
-    const double from = s_.time.motion_begin, to = from + s_.time.end, slack = 1e-9 * s_.time.end;
-    if (t.time.front() > from + slack || t.time.back() < to - slack)
-      fail(file_, fmt::format("goes from {:.6g} to {:.6g} s, the run from {:.6g} to {:.6g} s; give "
-                              "a table that lasts as long, or another time.end",
-                              t.time.front(), t.time.back(), from, to));
     return t;
+  }
+  void covers_run(const MotionTable& t) const {
+    const double begin = s_.time.motion_begin;
+    covers(t, begin, begin + s_.time.end, "the run", "time.end");
+  }
+  /// Refuses a table of speeds that goes backwards, or does not last from start to end.
+  void check(const MotionTable& t, const Emitter& e) const {
+    for (std::size_t k = 0; k < t.time.size(); ++k)
+      if (!(t.values[k][0] >= 0 && t.values[k][0] <= 1e6))
+        fail(file_ + ":" + std::to_string(t.line[k]),
+             fmt::format("V: is {:.6g} m/s, must be from 0 to 1e6", t.values[k][0]));
+    const double end = std::min(e.end.value_or(s_.time.end), s_.time.end);
+    if (end > e.start) covers(t, e.start, end, "the emitter", "end");
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
     bad_input(key_, where + ": " + what);
   }
 
  private:
+  void covers(const MotionTable& t, double from, double to, const char* what,
+              const char* key) const {
+    const double slack = 1e-9 * s_.time.end;
+    if (t.time.front() > from + slack || t.time.back() < to - slack)
+      fail(file_, fmt::format("goes from {:.6g} to {:.6g} s, {} from {:.6g} to {:.6g} s; give "
+                              "a table that lasts as long, or another {}",
+                              t.time.front(), t.time.back(), what, from, to, key));
+  }
   std::vector<CsvRow> all_rows(std::string& sha256) const {
     try {
       return read_csv(file_, "", &sha256);
@@ -139,20 +156,30 @@ double longest_of(const Scene& s) {
 }  // namespace
 
 void read_motion(const Scene& scene, Motion& m, const std::string& key, const std::string& file) {
-  m.table = Reader(scene, key, file).read({"t,x,y,z", "t,x,y,z,rx,ry,rz"});
+  const Reader reader(scene, key, file);
+  m.table = reader.read({"t,x,y,z", "t,x,y,z,rx,ry,rz"});
+  reader.covers_run(m.table);
 }
 void read_motion(const Scene& scene, TankMotion& m, const std::string& key,
                  const std::string& file) {
-  Reader reader(scene, key, file);
+  const Reader reader(scene, key, file);
   m.table = reader.read({"t,angle", "t,ax,ay,az"});
   if ((m.table.columns == 1) != m.axis.has_value())
     reader.fail(m.table.file, m.axis ? "holds accelerations, which have no axis; remove "
                                        "tank_motion.axis"
                                      : "holds angles; give tank_motion.axis");
+  reader.covers_run(m.table);
+}
+void read_motion(const Scene& scene, Emitter& e, const std::string& key, const std::string& file) {
+  const Reader reader(scene, key, file);
+  e.table = reader.read({"t,V"});
+  reader.check(e.table, e);
 }
 
 void choose_step_of_motions(Scene& scene) {
-  if (!has_motion(scene)) return;
+  const bool speeds =
+      std::ranges::any_of(scene.emitters, [](const Emitter& e) { return !e.path.empty(); });
+  if (!has_motion(scene) && !speeds) return;
   // Speeds and accelerations are means over a step, so a shorter step may show larger ones.
   for (int k = 0; k < 8; ++k) {
     const double before = scene.time.step, step = fitted_step(scene, longest_of(scene));

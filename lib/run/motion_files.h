@@ -13,6 +13,8 @@ namespace pbf::run_module {
 void read_motion(const Scene& scene, Motion& m, const std::string& key, const std::string& file);
 void read_motion(const Scene& scene, TankMotion& m, const std::string& key,
                  const std::string& file);
+/// The same for the speeds of an emitter, whose table lasts from its start to its end.
+void read_motion(const Scene& scene, Emitter& e, const std::string& key, const std::string& file);
 
 /// Chooses time.step from gravity, bodies and motions, after the tables have been read: the fastest
 /// obstacle moves by at most kSafeWay h in a step, and the acceleration of a particle at rest in

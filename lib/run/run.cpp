@@ -51,7 +51,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.rest_density = scene.fluid.rest_density;
   info.energy_at_rest = run.at_rest;
   info.particles = run.plan.particles;
-  info.capacity = scene.capacity;
+  info.capacity = changes_rows(scene) ? run.plan.most_particles() : 0;
   info.first_update = run.from.update();
   info.columns = run.plan.columns;
   return info;

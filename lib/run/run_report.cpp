@@ -152,7 +152,8 @@ std::string energy_lines(const Diagnostics& first, const Diagnostics& last, cons
   if (std::isfinite(at_rest)) out += fmt::format(", {:.6g} J at rest on the floor", at_rest);
   out += "\n";
   if (last.moved)
-    out += fmt::format("  work              {:.6g} J of what moves by itself\n", last.work);
+    out += fmt::format("  work              {:.6g} J of what moves by itself{}\n", last.work,
+                       last.inflow != 0 ? ", and of what came and went" : "");
   const std::string kept = kept_line(first, last, at_rest);
   out += kept;
   // Relative to the start's energy, the loss of a driven tank says nothing.
@@ -164,6 +165,22 @@ std::string energy_lines(const Diagnostics& first, const Diagnostics& last, cons
              "  largest rise      {:.3g} % at any time: 0 is good, above {:g} % the "
              "method adds energy\n",
              100 * last.energy_rise, 100 * kAddsEnergy);
+}
+
+/// What has come from each emitter and gone into each sink.
+std::string emission_lines(const Diagnostics& last, const std::vector<ReadingColumn>& columns) {
+  std::string out, particles;
+  if (last.readings.empty()) return {};  // resumed, and nothing was left to do
+  for_each_number(columns, Series::measures, [&](const ReadingColumn& c, int, std::size_t k) {
+    const std::string kind = c.kind, name = c.name;
+    if (kind != "emitter" && kind != "sink") return;
+    const double number = last.readings.at(k);
+    if (name == "particles") particles = fmt::format("{:.0f}", number);
+    if (name == "mass")
+      out += fmt::format("  {:17} {} particles, {:.6g} kg{}\n", kind + " " + c.of, particles,
+                         number, kind == "sink" ? " taken" : "");
+  });
+  return out;
 }
 
 /// Updates and wall time: of the run and, if it was resumed, of this session.
@@ -202,6 +219,10 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
   const double wall = run.control.wall.seconds(), loop = run.loop_seconds;
   const auto own = double(updates - run.from.update());
   std::string out = fmt::format("particles           {}\n", plan.particles);
+  if (comes_and_goes(scene))
+    out = fmt::format("particles           {} at the start, {} at the end\n", plan.particles,
+                      last.particles) +
+          emission_lines(last, plan.columns);
   out += progress_lines(run, wall);
   out += fmt::format("speed               {} particle-updates/s in these {}\n",
                      si_number(loop > 0 ? double(plan.particles) * own / loop : 0),

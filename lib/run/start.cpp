@@ -28,10 +28,13 @@ std::vector<std::string> notes_of(const Particles& p, const Scene& scene) {
                     p.put_on_margin, scene.solver.wall_margin, p.farthest_put));
   for (std::size_t b = 0; b < p.in_obstacles.size(); ++b)
     if (p.in_obstacles[b] > 0)
-      notes.push_back(
-          fmt::format("{} particles of bodies[{}] are in obstacles, or nearer to one than 0.4 "
-                      "spacings, and are left out",
-                      p.in_obstacles[b], b));
+      notes.push_back(fmt::format(
+          "{} particles of bodies[{}] are in {}, or nearer to one than 0.4 spacings, and "
+          "are left out",
+          p.in_obstacles[b], b,
+          scene.emitters.empty()    ? "obstacles"
+          : scene.obstacles.empty() ? "casings of emitters"
+                                    : "obstacles and casings of emitters"));
   return notes;
 }
 

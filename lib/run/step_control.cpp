@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lib/program/motion.h"
+#include "lib/scene/nozzle.h"
 
 namespace pbf::run_module {
 namespace {
@@ -26,7 +27,8 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   // Prescribed motions are known up to the next choice.
   const double next = m.time + scene_.measure_every * scene_.time.step;
   double acceleration = greatest_pull(scene_, m.time, next);
-  const double speed = std::max(m.speed_max, fastest_obstacle(scene_, m.time, next));
+  const double speed = std::max(
+      {m.speed_max, fastest_obstacle(scene_, m.time, next), fastest_emitter(scene_, m.time, next)});
   if (h_.speed >= 0 && m.time > h_.time)
     acceleration = std::max(acceleration, std::fabs(m.speed_max - h_.speed) / (m.time - h_.time));
   h_.time = m.time;

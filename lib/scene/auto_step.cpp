@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/scene/nozzle.h"
 #include "lib/scene/number.h"
 
 namespace pbf::scene_module {
@@ -30,6 +31,7 @@ StepRule step_rule(const Scene& s) {
   constexpr double never = std::numeric_limits<double>::infinity();
   double fastest = 0;
   for (const Body& b : s.bodies) fastest = std::max(fastest, magnitude(b.velocity));
+  fastest = std::max(fastest, fastest_emitter(s, 0, s.time.end));
   const double g = magnitude(s.gravity);
   return {g > 0 ? kSafeStep * std::sqrt(s.h() / g) : never,
           fastest > 0 ? kSafeWay * s.h() / fastest : never};

@@ -30,6 +30,7 @@ class Checker : public SceneRules {
     check_obstacles(p_, problems_);
     check_motions(p_, problems_);
     check_gauges(p_, problems_);
+    check_emitters(p_, problems_);
     check_periodic(p_, problems_);
     check_time();
     check_solver();

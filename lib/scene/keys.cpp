@@ -11,6 +11,7 @@ namespace pbf::scene_module {
 KeyRows start_rows();
 KeyRows obstacle_rows();
 KeyRows gauge_rows();
+KeyRows emitter_rows();
 KeyRows motion_rows();
 KeyRows moved_rows();
 KeyRows run_rows();
@@ -136,7 +137,7 @@ const Block* KeyTable::find_block(const std::string& path) const {
 }
 
 bool KeyTable::has_required(const Block& block) const {
-  if (block.list) return block.list->least > 0;
+  if (block.list) return block.list->least > 0 && block.list->unless.empty();
   return std::ranges::any_of(block.keys, &Key::required) ||
          std::ranges::any_of(blocks, [&](const Block& child) {
            return child.parent == &block && is_required(child);
@@ -166,9 +167,9 @@ std::map<const void*, std::string> KeyTable::names(const Object& object) const {
 
 const KeyTable& scene_table() {
   static Scene defaults;
-  static const KeyTable table(
-      {start_rows(), obstacle_rows(), gauge_rows(), motion_rows(), moved_rows(), run_rows()},
-      object(defaults));
+  static const KeyTable table({start_rows(), obstacle_rows(), gauge_rows(), emitter_rows(),
+                               motion_rows(), moved_rows(), run_rows()},
+                              object(defaults));
   return table;
 }
 

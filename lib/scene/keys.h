@@ -100,9 +100,10 @@ struct Key {
 struct List {
   std::string entry_name{};  ///< "body", for messages
   std::size_t least = 0;     ///< fewest entries
-  std::string remark{};      ///< further remark in the reference
-  std::string example{};     ///< an entry, for messages
-  std::string further{};     ///< a second entry in the reference scene; empty: none
+  std::string unless{};   ///< a list that may stand in for these: with entries of it none is needed
+  std::string remark{};   ///< further remark in the reference
+  std::string example{};  ///< an entry, for messages
+  std::string further{};  ///< a second entry in the reference scene; empty: none
   std::function<const void*(const Object&)> address{};  ///< of the member
   Object standard{};  ///< an entry with all defaults and with every block
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lib/scene/coloring.h"
+#include "lib/scene/emitter.h"
 #include "lib/scene/gauge.h"
 #include "lib/scene/motion.h"
 #include "lib/scene/obstacle.h"
@@ -210,6 +211,8 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Obstacle> obstacles;
   std::vector<Gauge> gauges;
+  std::vector<Emitter> emitters;
+  std::vector<Sink> sinks;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
   std::optional<TankMotion> tank_motion;
   std::optional<Settle> settle;
@@ -226,7 +229,8 @@ struct Scene {
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;
   int threads = 0;  ///< CPU threads; 0: from the number of particles (lib/program/threads.h)
-  /// Most particles at a time where their number changes; 0: it does not.
+  /// Most particles at a time where their number changes; 0: all that emitters may bring
+  /// (changes_rows() in lib/program/needs.h).
   std::int64_t capacity = 0;
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length

@@ -122,6 +122,7 @@ class SceneRules {
 void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);
+void check_emitters(const PlacedScene& placed, Problems& problems);
 void check_periodic(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::scene_module

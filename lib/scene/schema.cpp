@@ -118,7 +118,7 @@ Json block_schema(const KeyTable& table, const Block& block, Extent extent) {
 Json list_schema(const KeyTable& table, const Block& block) {
   return {{"description", block.help + "."},
           {"type", "array"},
-          {"minItems", block.list->least},
+          {"minItems", block.list->unless.empty() ? block.list->least : 0},
           {"items", kinds_schema(table, block, Extent::whole)}};
 }
 

@@ -40,7 +40,7 @@ class Validator {
       : table_(table), object_(object), problems_(problems) {}
 
   KeyPlaces run(const Node& root) {
-    out_.places[""] = root.place();
+    out_.places[""] = (root_ = &root)->place();
     if (root.kind == Node::Kind::map)
       read_block(*table_.find_block(""), "", root, object_, ~0u);
     else
@@ -207,9 +207,8 @@ class Validator {
 
   void read_list(const Block& block, const Node& value) {
     const List& list = *block.list;
-    const std::string name = block.leaf();
-    if (value.kind != Node::Kind::list || value.items.size() < list.least)
-      return report(value.place(), name,
+    if (value.kind != Node::Kind::list || value.items.size() < least_entries(list, *root_))
+      return report(value.place(), block.leaf(),
                     "expected a list of " + least_text(block) + ", e.g. - " + list.example +
                         "; got " + value.shown());
     block.resize(object_, value.items.size());
@@ -266,7 +265,7 @@ class Validator {
       report(place, direct ? join(shown, key.leaf()) : key.path, what + " (" + key.help + ")");
     }
     for (const Block& child : table_.blocks)
-      if (child.list && child.list->least > 0 && child.parent == &block &&
+      if (child.list && least_entries(*child.list, *root_) > 0 && child.parent == &block &&
           !seen.count(child.leaf()))
         report(place, child.leaf(), "missing; required, a list of " + least_text(child));
   }
@@ -274,6 +273,7 @@ class Validator {
   const KeyTable& table_;
   const Object& object_;
   Problems& problems_;
+  const Node* root_ = nullptr;
   KeyPlaces out_;
 };
 

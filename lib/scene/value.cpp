@@ -232,6 +232,11 @@ bool is_numeric(const Field& field) {
          !std::holds_alternative<ChoiceField>(field);
 }
 
+std::size_t least_entries(const List& list, const Node& scene) {
+  const Node* other = list.unless.empty() ? nullptr : scene.find(list.unless);
+  return other && other->kind == Node::Kind::list && !other->items.empty() ? 0 : list.least;
+}
+
 std::string read_field(const Key& key, const Node& node, const Field& field) {
   if (node.kind == Node::Kind::null) return "has no value; write one or remove the key";
   return std::visit(Reader{key, node}, field);

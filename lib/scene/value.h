@@ -17,6 +17,9 @@ bool in_range(const Key& key, double v);
 /// Whether "" is a valid text of the key: it is the default, and the key is not required.
 bool may_be_empty(const Key& key);
 
+/// Fewest entries of a list in a scene: none if the list that may stand in for it has some.
+std::size_t least_entries(const List& list, const Node& scene);
+
 /// Reads `node` into `field`, checking type, choices and range of `key`. Returns an error with a
 /// remedy, and leaves the field unchanged, or returns an empty string.
 std::string read_field(const Key& key, const Node& node, const Field& field);

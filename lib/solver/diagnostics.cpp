@@ -28,7 +28,8 @@ RestPool rest_pool(const Scene& scene, const Plan& plan, std::int64_t particles)
     if (s.gravity[i] != 0) axis = k, ++along;
   }
   RestPool pool;
-  if (along != 1 || !scene.obstacles.empty() || scene.tank_motion) return pool;
+  if (along != 1 || !scene.obstacles.empty() || scene.tank_motion || comes_and_goes(scene))
+    return pool;
   const bool points_up = s.gravity[std::size_t(axis)] > 0;
   for (int k = 0; k < 3; ++k) {
     const bool wall = k != 1 || s.dimensions == 3;  // a slab needs no walls at its two faces
@@ -70,9 +71,12 @@ Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
   const double h = scene.h(), n = double(particles > 0 ? particles : 1), mass = plan.mass;
   const Double3 origin = scene.origin();
   const double counted = double(particles - s.non_finite);
+  // Where particles come and go the zero of the energy stays that of the start.
+  const double of_start = comes_and_goes(scene) ? double(plan.particles) : counted;
   Diagnostics m;
   m.time = double(update) * scene.time.step;
   m.update = update;
+  m.particles = particles;
   m.velocity_lag = lag;
   m.compression_mean = s.compression / n;
   m.compression_rms = std::sqrt(s.compression_squared / n);
@@ -89,7 +93,7 @@ Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
     m.potential_energy -= mass * scene.gravity[axis] * h * (s.x[k] - lag * s.v[k]);
     // The reference of the energy is the lowest corner of the box, into which gravity points.
     const double extent = scene.domain.max[axis] - scene.domain.min[axis];
-    m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * counted;
+    m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * of_start;
     m.momentum[axis] = mass * h * s.v[k];
     m.center_of_mass[axis] = origin[axis] + h * s.x[k] / (counted > 0 ? counted : 1);
     m.front[axis] = origin[axis] + h * s.front[k];

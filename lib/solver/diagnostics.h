@@ -54,7 +54,9 @@ struct Diagnostics {
   bool moved = false;           ///< obstacles or the tank have a prescribed motion
   double power = 0;             ///< W, of the inertial forces by the tank's motion
   double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
-  double work = 0;              ///< J, of obstacles and tank since the start; WorkTrack
+  double inflow = 0;            ///< J, by emitters less what sinks took, since the start
+  std::int64_t particles = 0;   ///< their present number
+  double work = 0;              ///< J, of obstacles, tank and inflow since the start; WorkTrack
   /// Of Series::measures (lib/program/column.h), since the previous row. Monitor fills them in.
   std::vector<double> readings{};
 };
@@ -73,24 +75,26 @@ class WorkTrack {
   explicit WorkTrack(const EnergyHistory& before = {})
       : work_(before.work), power_(before.power), time_(before.time) {}
   /// J, the work up to measurement m.
-  double until(const Diagnostics& m) const {
-    return work_ + m.solid_work + 0.5 * (power_ + m.power) * (m.time - m.velocity_lag - time_);
-  }
+  double until(const Diagnostics& m) const { return m.inflow + motion_until(m); }
   /// To be called with each measurement at which the interval of the loads ends.
   void take(const Diagnostics& m) {
-    work_ = until(m);
+    work_ = motion_until(m);
     power_ = m.power;
     time_ = m.time - m.velocity_lag;
   }
 
  private:
+  double motion_until(const Diagnostics& m) const {
+    return work_ + m.solid_work + 0.5 * (power_ + m.power) * (m.time - m.velocity_lag - time_);
+  }
   double work_, power_, time_;
 };
 
 /// Follows E - W from the first measurement on: the energy without the work of prescribed motions,
 /// so only the numerical method can make it rise. If the start has no energy (E0 at most 1e-12 of
 /// the largest E so far), drift and rise are relative to the largest E so far. A rise of 1 then
-/// means that the method created all of it. The results are always finite.
+/// means that the method created all of it. Where energy comes in with particles, drift and rise
+/// are relative to the largest E so far, too, if that is more. The results are always finite.
 class EnergyTrack {
  public:
   explicit EnergyTrack(const EnergyHistory& before = {}) : h_(before) {
@@ -100,6 +104,7 @@ class EnergyTrack {
   /// Fills m.energy_drift and m.energy_rise. To be called with every measurement, in order.
   void follow(Diagnostics& m) {
     const double own = m.energy - m.work;
+    flows_ = flows_ || m.inflow != 0;
     if (!h_.started) h_.first = h_.lowest = h_.largest = own;
     h_.started = true;
     h_.largest = std::max(h_.largest, m.energy);
@@ -107,7 +112,7 @@ class EnergyTrack {
     h_.lowest = std::min(h_.lowest, own);
     m.energy_drift = relative(own - h_.first);
     m.energy_rise = h_.rise;
-    h_.work = m.work;
+    h_.work = m.work - m.inflow;
     h_.power = m.power;
     h_.time = m.time - m.velocity_lag;
   }
@@ -115,8 +120,10 @@ class EnergyTrack {
 
  private:
   double relative(double e) const {
-    return e == 0 ? 0 : e / (h_.first > 1e-12 * h_.largest ? h_.first : h_.largest);
+    const bool of_start = h_.first > (flows_ ? 1 : 1e-12) * h_.largest;
+    return e == 0 ? 0 : e / (of_start ? h_.first : h_.largest);
   }
+  bool flows_ = false;
   EnergyHistory h_;
 };
 

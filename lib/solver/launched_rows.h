@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace pbf::solver_module {
 
@@ -11,6 +12,12 @@ constexpr std::int64_t launched_rows(std::int64_t rows) {
   std::int64_t unit = 128;
   while (16 * unit < rows) unit *= 2;
   return (rows + unit - 1) / unit * unit;
+}
+
+/// Of particles for which there is no row.
+inline std::string no_room_text(std::int64_t refused, std::int64_t capacity) {
+  return std::to_string(refused) + " particles too many: there is memory for " +
+         std::to_string(capacity) + " at a time";
 }
 
 }  // namespace pbf::solver_module

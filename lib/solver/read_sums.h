@@ -35,6 +35,14 @@ std::vector<DissipationSum> read_dissipation(C& c) {
   return sums;
 }
 
+/// What emitters have brought and sinks taken, since the start.
+template <class C>
+std::vector<EmissionSum> read_emission(C& c) {
+  std::vector<EmissionSum> sums(comes_and_goes(c.scene) ? c.kept_rows(field::emission_sums) : 0);
+  if (!sums.empty()) c.exec.to_host(c.data(field::emission_sums), sums.size(), sums.data());
+  return sums;
+}
+
 /// The sums of the gauges of a tally.
 template <class C, class Tally>
 void read_sums(C& c, std::vector<typename Tally::Sums>& rows, Interval interval) {

@@ -12,6 +12,7 @@
 #include "lib/base/error.h"
 #include "lib/program/features.h"
 #include "lib/solver/internal_state.h"
+#include "lib/solver/launched_rows.h"
 #include "lib/solver/params.h"
 
 namespace pbf::PBF_VARIANT {
@@ -94,8 +95,7 @@ struct StepContext {
     else
       return static_cast<NoImages*>(nullptr);
   }
-  /// The number of rows for the host, which waits for it. Throws Error(guard) if there were too
-  /// many.
+  /// The number of rows for the host, which waits. Throws Error(guard) if there were too many.
   int host_rows() {
     if (auto* all = images()) return all->all();
     return host_particles(data(field::row_state));
@@ -111,10 +111,9 @@ struct StepContext {
     if (!pbf::changes_rows(scene)) return capacity();
     RowState now;
     exec.to_host(state, 1, &now);
-    if (now.refused > 0)
-      throw Error(ExitCode::guard, std::to_string(now.refused) +
-                                       " particles too many: there is memory for " +
-                                       std::to_string(capacity()) + " at a time");
+    std::string who;
+    if (now.refused > 0) for_features([&](auto& memory) { who += memory.no_row_text(*this); });
+    if (now.refused > 0) throw Error(ExitCode::guard, who + no_room_text(now.refused, capacity()));
     return int(now.rows);
   }
   /// Integers that passes have added up, over all ranks.

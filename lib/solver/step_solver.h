@@ -26,9 +26,8 @@ Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type,
 
 namespace pbf::PBF_VARIANT {
 
-/// Number of updates before the host first checks for lists that overflowed, on executors where
-/// lists can overflow. It is small at the start and after an overflow, because overflows often come
-/// in a row and all updates since the last check are then repeated.
+/// Updates before the host first checks for lists that overflowed. Few at the start and after an
+/// overflow: overflows often come in a row, and all updates since the last check are repeated.
 constexpr int kFirstBatch = 8;
 
 /// Features: those of plan.program.
@@ -99,6 +98,9 @@ class StepSolver final : public Solver, public Inspection {
     if (series == Series::gauges) return stepper_->gauges(interval);
     std::vector<double> all = load_readings(stepper_->loads(interval), scene_, plan_);
     for (const double e : dissipated(stepper_->dissipation(), scene_, plan_)) all.push_back(e);
+    const double time = double(updates_) * scene_.time.step;
+    for (const double e : emission_readings(stepper_->emission(), scene_, plan_, time))
+      all.push_back(e);
     return all;
   }
 
@@ -210,15 +212,14 @@ class StepSolver final : public Solver, public Inspection {
     }
     if constexpr (Exec::lists_overflow) exec_.enlarge_lists(stepper_->capacity());
   }
-
-  /// done: steps since the last counted update.
   void before_steps(std::int64_t done, int steps) {
     const int n = plan_.substeps;
     stepper_->before_steps(
         {at(done) * n, steps * n, scene_.time.step / double(std::int64_t(n) << options_.level)});
   }
   void measure_motion(Diagnostics& m) {
-    m.moved = has_motion(scene_);
+    m.inflow = inflow_energy(stepper_->emission(), scene_, plan_);
+    m.moved = has_motion(scene_) || comes_and_goes(scene_);
     const double unit = plan_.mass * scene_.h() * scene_.h();
     if (scene_.tank_motion)
       m.power = unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - m.velocity_lag,

@@ -128,6 +128,8 @@ class Stepper {
   std::vector<Load> loads(Interval interval) { return read_loads(c_, interval); }
   /// What took energy from the motion since the start: sums for dissipated().
   std::vector<DissipationSum> dissipation() { return read_dissipation(c_); }
+  /// What emitters have brought and sinks taken, since the start.
+  std::vector<EmissionSum> emission() { return read_emission(c_); }
   /// Readings of the gauges; means since the last call with Interval::ends.
   std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 

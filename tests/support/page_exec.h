@@ -168,7 +168,12 @@ class PageExec : public CpuExec {
   }
 
   /// The former contents of what the pass writes completely, or places without reading it.
+  /// A pass that adds rows, and with them their number, keeps those that are there.
   void forget_what_is_replaced(const PassInfo& pass) const {
+    const auto adds = [](const AccessInfo& a) {
+      return a.field == &field::row_state && (a.how & kPlaces);
+    };
+    if (!pass.reorders_rows() && std::ranges::any_of(pass.needs, adds)) return;
     for (const AccessInfo& need : pass.needs) {
       const FieldInfo& f = *need.field;
       const bool places = f.life == Life::pass && (need.how & kPlaces) && !(need.how & kReading);

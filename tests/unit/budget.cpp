@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2270},      {"kernels", 6420},   {"lib/base", 1850},    {"lib/campaign", 3850},
-    {"lib/exec", 6900}, {"lib/io", 4000},    {"lib/program", 7400}, {"lib/render", 3930},
-    {"lib/run", 6000},  {"lib/scene", 7660}, {"lib/solver", 3050},  {"lib/verify", 2200},
+    {"app", 2270},      {"kernels", 6800},   {"lib/base", 1850},    {"lib/campaign", 3850},
+    {"lib/exec", 6900}, {"lib/io", 4000},    {"lib/program", 8250}, {"lib/render", 3930},
+    {"lib/run", 6050},  {"lib/scene", 8350}, {"lib/solver", 3050},  {"lib/verify", 2200},
 };
 constexpr int kLongestFile = 300;
 

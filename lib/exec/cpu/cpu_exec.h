@@ -80,8 +80,10 @@ class CpuExec : public CpuRows, protected CpuThreads {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
-  /// The present number of particles, for launches.
-  int counted(const RowState* state, int) const { return int(state->rows); }
+  /// The present number of particles, for launches. state: null if it is `launched`.
+  int counted(const RowState* state, int launched) const {
+    return state ? int(state->rows) : launched;
+  }
   static int rows_now(const RowState& state) { return int(state.rows); }
   void rows_changed() {}
 

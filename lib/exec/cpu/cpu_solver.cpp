@@ -15,7 +15,7 @@ namespace pbf::PBF_VARIANT {
 namespace {
 
 template <class Real>
-using CpuSolver = StepSolver<Real, PeriodicExec<RankExec<CpuExec>>, RankFeatures>;
+using CpuSolver = StepSolver<Real, PeriodicExec<RankExec<CpuExec>>>;
 
 }  // namespace
 

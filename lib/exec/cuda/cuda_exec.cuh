@@ -25,6 +25,7 @@ class CudaExec : public CudaSums {
   using UnknownRows = RowsBetween;  ///< of ranks: rows whose numbers the host does not know yet
   static constexpr Backend backend = Backend::cuda;
   static constexpr bool lists_overflow = true;
+  static constexpr bool counts_on_device = true;  ///< the number of rows, where it changes
   template <class T>
   using Buffer = DeviceBuffer<T>;
 

@@ -11,7 +11,7 @@ namespace pbf::PBF_VARIANT {
 namespace {
 
 template <class Real>
-using CudaSolver = StepSolver<Real, PeriodicExec<RankExec<CudaExec>>, RankFeatures>;
+using CudaSolver = StepSolver<Real, PeriodicExec<RankExec<CudaExec>>>;
 
 }  // namespace
 

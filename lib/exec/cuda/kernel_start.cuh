@@ -27,7 +27,9 @@ __device__ __forceinline__ int first_of(const CountedRows&) { return 0; }
 __device__ __forceinline__ int first_of(const RowRange& rows) { return aligned(rows); }
 __device__ __forceinline__ int end_of(int n) { return n; }
 __device__ __forceinline__ int end_of(const CountedRows& rows) { return int(rows.state->rows); }
-__device__ __forceinline__ int end_of(const RowRange& rows) { return rows.last; }
+__device__ __forceinline__ int end_of(const RowRange& rows) {
+  return rows.state ? int(rows.state->rows) : rows.last;
+}
 
 /// Rows *first ... *last - 1, numbers on the device; at most `most`. What was launched last must
 /// have written them, and the launch is alone.

@@ -18,7 +18,7 @@ class PeriodicExec : public Base {
   using typename Base::Lists;
   struct Rows : Base::Rows {
     const int* id = nullptr;  ///< of all rows if some are images
-    operator RowRange() const { return {this->first, this->last, id}; }
+    operator RowRange() const { return {this->first, this->last, id, this->state}; }
   };
 
   template <class... Args>
@@ -30,7 +30,7 @@ class PeriodicExec : public Base {
 
   Rows counted(const RowState* state, int launched) const {
     if (!images_) return {Base::counted(state, launched)};
-    return {{0, images_->all(), images_->all(), true}, images_->ids()};
+    return {{0, images_->all(), images_->all(), true, nullptr}, images_->ids()};
   }
 
   using Base::items, Base::pairs, Base::build_lists, Base::repeat_while;

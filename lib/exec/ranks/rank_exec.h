@@ -14,23 +14,17 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// The number of a rank's rows changes.
-struct CountsRows {
-  static constexpr bool changes_rows = true;
-  using Passes = PassList<>;
-  static void add(const Scene&, auto&) {}
-};
-using RankFeatures = Features::With<CountsRows>;
-
 template <class Base>
 class RankExec : public Base {
  public:
   using typename Base::Lists;
-  /// The rows for which passes run, and all rows. counted: their number may change.
+  /// The rows for which passes run, and all rows. counted: their number may change. state: as in
+  /// RowRange.
   struct Rows {
     int first, last, all;
     bool counted;
-    operator RowRange() const { return {first, last}; }
+    const RowState* state = nullptr;
+    operator RowRange() const { return {first, last, nullptr, state}; }
   };
   /// ranks: null if there is one alone. The others as for Base.
   template <class... Args>
@@ -44,8 +38,12 @@ class RankExec : public Base {
   /// launched: the rows, if their number does not change.
   Rows counted(const RowState* state, int launched) const {
     if (rows_) return {rows_->first(), rows_->last(), rows_->all(), true};
-    const int all = state ? Base::rows_now(*state) : launched;
-    return {0, all, all, state != nullptr};
+    if constexpr (kDeviceCounts) {
+      return {0, launched, launched, state != nullptr, state};
+    } else {
+      const int all = state ? Base::rows_now(*state) : launched;
+      return {0, all, all, state != nullptr};
+    }
   }
 
   using Base::items, Base::pairs, Base::repeat_while;
@@ -114,6 +112,9 @@ class RankExec : public Base {
   template <class Pass, class Body>
   void repeat_while(const char* stage, const Rows& rows, int times, const Pass& pass,
                     double tolerance, unsigned long long* repeats, const Body& body) {
+    if constexpr (kDeviceCounts)
+      if (rows.state)
+        return Base::repeat_while(stage, RowRange(rows), times, pass, tolerance, repeats, body);
     if (!rows_) return Base::repeat_while(stage, rows.all, times, pass, tolerance, repeats, body);
     const auto sum = [&] {
       auto s = std::int64_t(Base::sum_of(rows.last - rows.first, From<Pass>{pass, rows.first}));
@@ -133,8 +134,13 @@ class RankExec : public Base {
                          int bins, const int* id, int* order, int* start, const Gather& gather) {
     const int n = rows.all;
     if (rows_) return sort_on_ranks(stage, of, near, rows, bins, id, order, start, gather);
-    if (rows.counted)
+    if constexpr (kDeviceCounts) {
+      if (rows.counted)
+        return Base::template sort_by_bin<leave>(
+            stage, of, near, RowRange{0, n, nullptr, rows.state}, bins, id, order, start, gather);
+    } else if (rows.counted) {
       return Base::template sort_by_bin<leave>(stage, of, near, n, bins, id, order, start, gather);
+    }
     return Base::template sort_by_bin<false>(stage, of, near, n, bins, id, order, start, gather);
   }
   using Base::build_lists;
@@ -209,6 +215,9 @@ class RankExec : public Base {
   }
 
  private:
+  /// Whether the number of rows, where it changes, is known to a device alone.
+  static constexpr bool kDeviceCounts = requires { Base::counts_on_device; };
+
   /// Takes rows to their ranks between the pass that gives them their bins and the sort. Rows near
   /// solids, which such a pass leaves out, must have been predicted before.
   template <class First, class Near, class Gather>

@@ -16,6 +16,8 @@ namespace {
 
 /// Why a scene cannot run on several ranks; null: it can.
 const char* why_one_rank(const Scene& s) {
+  if (!s.emitters.empty()) return "its emitters change the number of particles";
+  if (!s.sinks.empty()) return "its sinks change the number of particles";
   if (changes_rows(s)) return "the number of its particles changes";
   if (!s.domain.periodic.empty()) return "it has periodic axes (domain.periodic)";
   for (const Gauge& g : s.gauges)

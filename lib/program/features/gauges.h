@@ -31,9 +31,9 @@ namespace pbf::PBF_VARIANT {
 /// Updates the sides of all particles; `count`: also counts the particles that changed sides.
 template <class G>
 void take_sides(const G& c, bool count) {
-  c.items(FlowPass<typename G::Real>{c[field::gates], gauges_of<FlowTally>(c.scene),
-                                     c[field::position], c[field::id], c[field::flow_sides],
-                                     count ? c[field::flows] : nullptr, double(c.p.update_dt)});
+  c.items(FlowPass<typename G::Real>{
+      c[field::gates], gauges_of<FlowTally>(c.scene), c[field::position], c[field::id],
+      c[field::flow_sides], count ? c.declared(field::flows) : nullptr, double(c.p.update_dt)});
 }
 
 struct CountFlow {
@@ -42,6 +42,14 @@ struct CountFlow {
                            Looks<field::flow_sides>, Places<field::flow_sides>, Looks<field::flows>,
                            Adds<field::flows>>;
   static void launch(const auto& c) { take_sides(c, true); }
+};
+
+/// Of the particles that begin in an update.
+struct TakeNewSides {
+  static constexpr PassText text{"sides", "measure"};
+  using Needs = pbf::Needs<Reads<field::position>, Reads<field::id>, Looks<field::gates>,
+                           Places<field::flow_sides>>;
+  static void launch(const auto& c) { take_sides(c, false); }
 };
 
 struct Gauges;
@@ -67,7 +75,7 @@ constexpr bool is_read_by_pass = requires {
 };
 template <class... Tally>
 typename Joined<
-    PassList<CountFlow>,
+    PassList<CountFlow, TakeNewSides>,
     std::conditional_t<is_read_by_pass<Tally>, PassList<ReadGauges<Tally>>, PassList<>>...>::type
 gauge_passes(const std::tuple<TalliedGauges<Tally>...>&);
 
@@ -76,6 +84,7 @@ struct Gauges {
   static void add(const Scene& s, auto& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
     if (gauges_of<FlowTally>(s) > 0) b.end(CountFlow());
+    if (gauges_of<FlowTally>(s) > 0 && has_emitters(s)) b.rows(TakeNewSides());
     const auto add_pass = [&]<class Tally>(const TalliedGauges<Tally>&) {
       if constexpr (is_read_by_pass<Tally>)
         if (gauges_of<Tally>(s) > 0) b.reading(ReadGauges<Tally>());

@@ -7,8 +7,12 @@
 #include "lib/program/pass.h"
 
 namespace pbf::program_module {
-inline std::int64_t per_obstacle(const Sizes& n) { return std::int64_t(n.scene.obstacles.size()); }
-inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
+/// With the casing and the bore of each emitter behind them (kernels/boundary/solid_scene.h).
+inline std::int64_t solids_in(const Scene& s) {
+  return std::int64_t(s.obstacles.size() + 2 * s.emitters.size());
+}
+inline std::int64_t per_obstacle(const Sizes& n) { return solids_in(n.scene); }
+inline bool has_obstacles(const Scene& s) { return solids_in(s) > 0; }
 inline bool has_tank_motion(const Scene& s) { return s.tank_motion.has_value(); }
 }  // namespace pbf::program_module
 

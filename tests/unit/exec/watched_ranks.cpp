@@ -54,8 +54,7 @@ Ran watched(const Made& m, int ranks, int updates, std::vector<RankWatch>& all,
   std::mutex mutex;
   Ran ran;
   run_thread_ranks(ranks, [&](Communicator& c) {
-    StepSolver<float, WatchedExec, RankFeatures> solver(scene, plan, m.part(c),
-                                                        all[std::size_t(c.rank())], c);
+    StepSolver<float, WatchedExec> solver(scene, plan, m.part(c), all[std::size_t(c.rank())], c);
     solver.step(updates, {});
     Ran mine;
     add(solver, mine);

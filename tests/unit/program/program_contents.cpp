@@ -40,6 +40,7 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
                     density = "density pass of its own: solver.fused is true",
                     levels = "levels: grids coarser than h: solver.levels is off",
                     pressure = "artificial pressure in the delta loop: no key tensile",
+                    rows = "particles that come and go: no keys emitters, sinks",
                     xsph = "xsph pass: no key viscosity",
                     curl = "curl and confinement passes, curl array: no key vorticity",
                     loads =
@@ -47,21 +48,22 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
                         "or motion",
                     gauges = "gauges: no key gauges";
   CHECK(left_out("", {}) ==
-        Lines{tank, density, levels, pressure, xsph, curl, loads, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, curl, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.fused=false"}) ==
-        Lines{tank, levels, pressure, xsph, curl, loads, gauges, order, calm});
+        Lines{tank, levels, pressure, rows, xsph, curl, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.iterations=0"}) ==
-        Lines{tank, iterations, "levels: grids coarser than h: solver.iterations is 0", xsph, curl,
-              loads, gauges, order, "passes of hyperviscosity, its array: solver.iterations is 0"});
+        Lines{tank, iterations, "levels: grids coarser than h: solver.iterations is 0", rows, xsph,
+              curl, loads, gauges, order,
+              "passes of hyperviscosity, its array: solver.iterations is 0"});
   CHECK(left_out("", {"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}) ==
-        Lines{tank, density, levels, pressure, xsph, curl, loads, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, curl, loads, gauges, order, calm});
   CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) ==
-        Lines{obstacles, tank, density, levels, pressure, curl, loads, gauges, order, calm});
+        Lines{obstacles, tank, density, levels, pressure, rows, curl, loads, gauges, order, calm});
   CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) ==
-        Lines{tank, density, levels, pressure, xsph, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,
                  {"solver.levels=on", "tensile.k=0.01", "solver.fused=false", "viscosity.xsph=0.1",
-                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{order, calm});
+                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{rows, order, calm});
 }
 
 TEST_CASE("program: passes are counted as often as they run at most, with what tests a tolerance") {

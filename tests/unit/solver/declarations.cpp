@@ -86,6 +86,10 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/meshes",
      {"time.order=1", "tank_motion=off", "solver.fused=false", "domain.loads=false",
       "obstacles.0.motion=off"}},
+    {"tests/regression/frozen/emitters", {}},
+    {"tests/regression/frozen/emitters",
+     {"time.order=1", "obstacles=[]", "solver.substeps=3", "viscosity.xsph=0.1"}},
+    {"tests/regression/frozen/emitters", {"emitters=[]", "gauges=[]"}},
 };
 
 struct Prepared {
@@ -128,9 +132,10 @@ Touches run(const Scenario& of) {
   Prepared made(of);
   const auto solver = made.watched();
   solver->diagnose();
-  solver->step(3, watching(of));  // passes joined
+  // Passes joined. Until particles have come and gone.
+  solver->step(comes_and_goes(made.scene) ? 40 : 3, watching(of));
   if (made.scene.time.adaptive) solver->step(1, {.level = 1});
-  solver->inspection()->trace({});  // pass by pass
+  if (!changes_rows(made.scene)) solver->inspection()->trace({});  // pass by pass
   solver->readings(Series::gauges, Interval::goes_on);
   solver->step(1, without_time());
   solver->diagnose();
@@ -172,7 +177,7 @@ std::string first_difference(const Scenario& of, const std::string& forgets) {
   both("start", [](Solver&) {});
   for (const int updates : {1, 1, 3, 2})
     both("updates", [&](Solver& s) { s.step(updates, watching(of)); });
-  both("trace", [](Solver& s) { s.inspection()->trace({}); });
+  if (!changes_rows(made.scene)) both("trace", [](Solver& s) { s.inspection()->trace({}); });
   both("update after a trace", [](Solver& s) { s.step(1); });
   both("keep", [](Solver& s) { s.keep(), s.step(2, without_time()); });
   both("back", [](Solver& s) { s.set_state(s.state(StateOf::kept)), s.step(2); });
@@ -204,6 +209,7 @@ TEST_CASE("passes touch what they declare, as they declare it, and declare nothi
         CAPTURE(pass, field);
         const bool touched = touch.read || touch.written;
         if (touched) unused.erase(field);
+        if (field == field::row_state.name && !touch.declared) continue;  // the host reads it
         CHECK_FALSE((touch.read && !(touch.declared & kReading)));
         CHECK_FALSE((touch.written && !(touch.declared & kWriting)));
         CHECK((touched || for_some(field) || field == field::order.name));
