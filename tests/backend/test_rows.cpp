@@ -1,14 +1,14 @@
-// Particles that come and go: the shower and the drain of tests/support/emitting.h.
+// The rows of particles that come and go: a shower, and a drain in a corner of the floor.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "lib/base/error.h"
+#include "lib/exec/make_solver.h"
 #include "lib/io/checkpoint.h"
-#include "lib/program/make_program.h"
 #include "lib/run/emit.h"
 #include "lib/solver/launched_rows.h"
 #include "tests/support/backend.h"
-#include "tests/support/emitting.h"
 #include "tests/support/folder.h"
 #include "tests/support/scene_samples.h"
 
@@ -16,34 +16,35 @@ namespace rows_test {
 using namespace pbf;
 namespace {
 
+constexpr int kLayer = 16;     // particles of the shower that come at a time
+constexpr double kEdge = 0.3;  // m, of the drain
+
 struct Emitting {
   Scene scene;
   Plan plan;
-  explicit Emitting(const std::vector<std::string>& set = {}, std::int64_t capacity = 6000) {
+  explicit Emitting(const std::vector<std::string>& set = {}) {
     scene = scene_test::parse(
         "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
         "fluid: {spacing: 0.05}\n"
         "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.5, 0.4]}]\n"
+        "emitters: [{name: shower, shape: rectangle, center: [0.4, 0.4, 0.7], normal: [0, 0, -1], "
+        "size: [0.2, 0.2], speed: 2}]\n"
+        "sinks: [{name: drain, min: [0, 0, 0], max: [0.3, 0.3, 0.3]}]\n"
         "time: {step: 0.002, end: 1, adaptive: off}\n"
         "solver: {reproducible: true}\n",
         set);
     scene.precision = backend_test::precision();
     scene.backend = backend_test::backend();
-    scene.capacity = capacity;
     plan = make_plan(scene, std::int64_t(particles().size()));
-    plan.program = make_program_of<EmittingFeatures>(scene, plan.shape());
-    plan.memory = plan_memory(scene, plan);
   }
   Particles particles() const { return emit_particles(scene, ""); }
   std::unique_ptr<Solver> on_cpu(int threads) const {
-    return test::emitting_on_cpu(scene, plan, particles(), threads);
+    Scene there = scene;
+    there.backend = Backend::cpu;
+    there.threads = threads;
+    return make_solver(there, plan, particles());
   }
-  std::unique_ptr<Solver> here() const {
-#ifdef PBF_HAS_CUDA
-    if (scene.backend == Backend::cuda) return test::emitting_on_cuda(scene, plan, particles());
-#endif
-    return on_cpu(2);
-  }
+  std::unique_ptr<Solver> here() const { return make_solver(scene, plan, particles()); }
 };
 
 bool same(const SolverState& a, const SolverState& b) {
@@ -60,17 +61,20 @@ TEST_CASE("rows: new particles come behind the last, and those in the drain leav
   const Emitting e;
   const auto solver = e.here();
   const double h = e.scene.h();
+  const double edge = e.scene.precision == Precision::single ? double(float(kEdge / h)) : kEdge / h;
   SolverState before = solver->state();
   std::int64_t next = std::int64_t(before.id.size()), gone = 0;
-  for (int update = 0; update < 120; ++update) {
+  const std::int64_t first = next;
+  for (int update = 1; update <= 120; ++update) {
     std::vector<std::int64_t> expected;
     for (std::size_t k = 0; k < before.id.size(); ++k) {
       const double* x = &before.position[3 * k];
-      const double edge = e.scene.precision == Precision::single ? double(float(0.3 / h)) : 0.3 / h;
-      const bool in = x[0] < edge && x[1] < edge && x[2] < edge;
+      const bool in = x[0] <= edge && x[1] <= edge && x[2] <= edge;
       in ? void(++gone) : expected.push_back(before.id[k]);
     }
-    for (int j = 0; j < shower::kPerSort; ++j) expected.push_back(next++);
+    // A layer begins when the ones before it have made half a spacing, and then each spacing more.
+    const auto layers = std::int64_t(std::floor(2 * 0.002 * update / 0.05 + 0.5 + 1e-9));
+    while (next < first + kLayer * layers) expected.push_back(next++);
     solver->step(1);
     before = solver->state();
     REQUIRE(before.id == expected);
@@ -79,6 +83,7 @@ TEST_CASE("rows: new particles come behind the last, and those in the drain leav
     REQUIRE(number(before, 2) == double(gone));
   }
   CHECK(gone > 100);
+  CHECK(next == first + 10 * kLayer);
   CHECK(solver->diagnose().non_finite == 0);
 }
 
@@ -154,38 +159,24 @@ TEST_CASE("rows: updates are recorded anew for few numbers of launched rows") {
   for (int update = 0; update < 1000; update += 20) {
     const auto rows = std::int64_t(solver->state().id.size());
     solver->step(20);
-    for (int k = 0; k <= 20; ++k) launched.insert(launched_rows(rows + k * shower::kPerSort));
+    for (int k = 0; k <= 2 * kLayer; ++k) launched.insert(launched_rows(rows + k));
   }
   // Three lengths of recordings, two places of the arrays.
   CHECK(solver->info().recordings - before <= 6 * int(launched.size()));
   CHECK((solver->info().recordings > 0) == (e.scene.backend == Backend::cuda));
 }
 
-TEST_CASE("rows: particles for which there is no memory stop the run, with their number") {
-  const Emitting e({}, 1300);
-  const auto solver = e.here();
-  try {
-    for (int k = 0; k < 400; ++k) solver->step(4);
-    solver->diagnose();
-    FAIL("no error");
-  } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::guard);
-    CHECK(std::string(error.what()).find("memory for 1300 at a time") != std::string::npos);
-  }
-}
-
 TEST_CASE("rows: all particles may leave, and others come later") {
-  Emitting e;
-  e.scene.bodies[0].max = {0.25, 0.25, 0.25};
-  e.plan = make_plan(e.scene, std::int64_t(e.particles().size()));
-  e.plan.program = make_program_of<EmittingFeatures>(e.scene, e.plan.shape());
+  const Emitting e({"bodies.0.max=[0.25, 0.25, 0.25]", "emitters.0.start=0.02"});
   const auto solver = e.here();
+  const auto waiting = std::size_t(2 * kLayer);
   const SolverState first = solver->state();
-  REQUIRE(first.id.size() > 50);
+  REQUIRE(first.id.size() > waiting + 50);
   solver->step(1);
-  CHECK(solver->state().id.size() == std::size_t(shower::kPerSort));
-  CHECK(solver->state().id[0] == int(first.id.size()));
+  CHECK(solver->state().id.size() == waiting);
   solver->step(40);
+  CHECK(solver->state().id.size() == waiting + 2 * kLayer);
+  CHECK(solver->state().id.back() == std::int64_t(first.id.size()) + 2 * kLayer - 1);
   CHECK(solver->diagnose().non_finite == 0);
 }
 
