@@ -184,7 +184,7 @@ TEST_CASE("a run in which particles appear and disappear goes on after a stop as
   Scene scene = ten_updates();
   scene.precision = Precision::dbl;  // as the state of this solver
   scene.checkpoint.emplace();
-  scene.capacity = 20;
+  scene.sinks = {{"drain", {0, 0, 0}, {0.1, 0.1, 0.1}}};  // their number may change
   CountedRun whole(scene), stopped(scene);
   whole.solver.ids = stopped.solver.ids = alive;
   CHECK(whole.error() == "no error");

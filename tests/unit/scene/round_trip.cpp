@@ -265,18 +265,21 @@ TEST_CASE("table of keys: every default lies in its own range") {
     Body body;
     Obstacle obstacle;
     obstacle.motion.emplace();
+    Emitter emitter;
     Node node;
     const Block* list = key.block->list_around();
-    const bool of_body = list && list->path == "bodies[]", of_scene = !list;
+    const bool of_body = list && list->path == "bodies[]", of_scene = !list,
+               of_emitter = list && list->path == "emitters[]";
     const std::string text = value_text(key, of_scene ? object(defaults) : key.standard);
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
     node.text = text;
     CAPTURE(key.path, text);
     CHECK(read_field(key, node,
-                     key.field(of_scene  ? object(scene)
-                               : of_body ? object(body)
-                                         : object(obstacle)))
+                     key.field(of_scene     ? object(scene)
+                               : of_body    ? object(body)
+                               : of_emitter ? object(emitter)
+                                            : object(obstacle)))
               .empty());
   }
 }
@@ -308,10 +311,11 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
        (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
     ++closed;
   CHECK(objects == closed);
-  // One object for every shape of a body and of an obstacle, each kind of its motion, and every
-  // kind of a gauge; and what gravity may be.
+  // One object for every shape of a body, of an emitter and of an obstacle, each kind of its
+  // motion, and every kind of a gauge; and what gravity may be.
   const auto kinds = [](const char* key) { return scene_table().find_key(key)->choices.size(); };
-  CHECK(objects == scene_table().blocks.size() - 5 + kinds("bodies[].shape") +
+  CHECK(objects == scene_table().blocks.size() - 6 + kinds("bodies[].shape") +
+                       kinds("emitters[].shape") +
                        kinds("obstacles[].shape") * (1 + kinds("obstacles[].motion.kind")) +
                        kinds("tank_motion.kind") + kinds("gauges[].kind") + 1);
 }
