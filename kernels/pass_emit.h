@@ -84,7 +84,6 @@ struct HoldPredictedPass {
     if (free) free[i] = with_w(held ? v : xyz(free[i]) + (v - before), Real(0));
     position[i] = with_w(x, position[i].w);
     velocity[i] = with_w(v, Real(0));
-    if (pipes.near.way_left_squared && !pipes.near.near(i)) pipes.near.mark_near(i);
   }
 };
 
@@ -102,8 +101,6 @@ struct FindPipeRowsPass {
     for (int e = 0; e < pipes.nozzles; ++e) {
       if (!pipes.is_near(e, xyz(position[i]), Real(kNearRoom))) continue;
       row[take_place(count)] = i;
-      // Passes with the full boundary move them too.
-      if (pipes.near.way_left_squared && !pipes.near.near(i)) pipes.near.mark_near(i);
       return;
     }
   }
@@ -138,13 +135,15 @@ struct SinkPass {
   OwnRows<const Vec4<Real>> position, velocity;
   OwnRows<int> id;
   PBF_HD void operator()(int i) const {
+    const int mine = id[i];
+    if (mine < 0) return;
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
     for (int k = 0; k < sinks; ++k) {
       const SinkBox<Real>& s = sink[k];
       if (!(x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
             x.y <= s.max.y && x.z <= s.max.z))
         continue;
-      id[i] = -1 - id[i];
+      id[i] = -1 - mine;
       add_whole(&book.sums[first + k].particles, 1);
       book.add_energy(first + k, EmissionBook::energy(x, v, gravity));
       const Real along[3] = {v.x, v.y, v.z};

@@ -37,12 +37,6 @@ struct RowRange {
   PBF_HD bool leaves_out(int i) const { return id && is_image(id[i]); }
 };
 
-/// A number of rows that is in the memory of the executor; at most `most`.
-struct CountedRows {
-  const RowState* state;
-  int most;
-};
-
 }  // namespace pbf
 
 namespace pbf::PBF_VARIANT {

@@ -60,11 +60,16 @@ struct SolidBoundary : Box<Real> {
     double deepest = Box<Real>::penetration(x);
     const Vec3<Real> at{Real(x[0]), Real(x[1]), Real(x[2])};
     if (!obstacles || !bounds.has(at)) return deepest;
-    for (int k = 0; k < solid_scene->obstacles; ++k) {
-      const PosedSolid<Real>& s = solid_scene->solid[k];
-      if (!s.bounds.has(at)) continue;
-      deepest = max2(deepest, -double(solid_scene->flat ? distance<2>(s.solid, at)
-                                                        : distance<3>(s.solid, at)));
+    const SolidScene<Real>& all = *solid_scene;
+    const auto away = [&](int k) {
+      return double(all.flat ? distance<2>(all.solid[k].solid, at)
+                             : distance<3>(all.solid[k].solid, at));
+    };
+    for (int k = 0; k < all.solids; ++k) {
+      if (!all.solid[k].bounds.has(at)) continue;
+      double depth = -away(k);
+      if (depth > deepest && k >= all.obstacles()) depth = min2(depth, away(k + all.casings));
+      deepest = max2(deepest, depth);
     }
     return deepest;
   }

@@ -25,14 +25,14 @@ struct SolidScene {
   Box<Real> walls;
   const PosedSolid<Real>* solid = nullptr;
   const Solid<Real>* before = nullptr;  ///< poses at the start of the step; null: as `solid`
+  /// Obstacles, then the casing of each emitter. Behind them is the bore of each casing, which is
+  /// no solid where fluid is held (kernels/emission.h).
   int solids = 0;
-  /// Of them, which come first. Then two for each emitter: its casing and, in that, the bore, which
-  /// is no solid where fluid is held (kernels/emission.h).
-  int obstacles = 0;
+  int casings = 0;    ///< of them
   bool flat = false;  ///< two dimensions
   LoadBook<Real> loads{};
 
-  PBF_HD bool is_bore(int k) const { return k >= obstacles && (k - obstacles) % 2 == 1; }
+  PBF_HD int obstacles() const { return solids - casings; }
 };
 
 template <class Real>
@@ -45,10 +45,10 @@ template <class Real>
 PBF_HD PathEnd<Real> keep_out(const SolidScene<Real>& s, bool start, int k, Vec3<Real> from,
                               Vec3<Real> to) {
   const PosedSolid<Real>& placed = s.solid[k];
-  if (!placed.bounds.meets(from, to) || s.is_bore(k)) return {to};
+  if (!placed.bounds.meets(from, to)) return {to};
   // What is held in a bore, or leaves it, is not kept out. Nothing else is there:
   // Pipes::kept_out().
-  if (k >= s.obstacles && is_in(s, k + 1, from)) return {to};
+  if (k >= s.obstacles() && is_in(s, k + s.casings, from)) return {to};
   const Solid<Real>& before = start && s.before ? s.before[k] : placed.solid;
   return s.flat ? keep_out<2>(before, placed.solid, from, to)
                 : keep_out<3>(before, placed.solid, from, to);
@@ -101,12 +101,12 @@ PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
 /// that they push.
 template <Smoothing S, class Real, class Step, class F>
 PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const Step& step, F&& f) {
-  for (int k = 0; k < s.solids; ++k) {
+  for (int k = 0; k < s.solids + s.casings; ++k) {
     if (!s.solid[k].bounds.has(x)) continue;
-    SolidTerm<Real> term =
+    const SolidTerm<Real> term =
         solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range);
-    if (s.is_bore(k)) term = {-term.share, Real(-1) * term.gradient};
-    f(k, term);
+    const Real sign(k < s.solids ? 1 : -1);
+    f(k, SolidTerm<Real>{sign * term.share, sign * term.gradient});
   }
 }
 
@@ -139,7 +139,7 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
                                              int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
-    if (booked && wall < load_row_of_solid(s.obstacles)) s.loads.add(wall, i, target, way, start);
+    if (booked && wall < load_row_of_solid(s.obstacles())) s.loads.add(wall, i, target, way, start);
   };
   const auto inside_walls = [&](Vec3<Real> x) {
     const Vec3<Real> in = s.walls.path_end(from, x), way = in - x;
@@ -184,7 +184,8 @@ PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, cons
   if (share > Real(0) && share < Real(1)) {
     const Real left = s.walls.scale - s.walls.template term<S>(place).density;
     for_solids_at<S>(s, x, step, [&](int k, const SolidTerm<Real>& one) {
-      if (k < s.obstacles) s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
+      if (k < s.obstacles())
+        s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
     });
   }
   const Real free = factor * max2(Real(1) - share, Real(0));

@@ -36,18 +36,17 @@ std::vector<Solid<double>> casings_of(const Scene& s) {
 }
 
 std::vector<Solid<double>> casings_and_bores(const Scene& s, const Axes& axes) {
-  std::vector<Solid<double>> all;
+  std::vector<Solid<double>> all = casings_of(s);
   for (const Emitter& e : s.emitters) {
     const NozzlePlace n = nozzle_place(s, e, fastest_of(e));
-    for (Solid<double> body :
-         {body_of(n, n.length(), n.wall, s), body_of(n, n.depth, kGap * s.fluid.spacing, s)}) {
-      const Solid<double> along_scene = body;
-      const double center[3] = {body.center.x, body.center.y, body.center.z};
-      body.center = {center[axes.of[0]], center[axes.of[1]], center[axes.of[2]]};
-      for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3; ++k) body.turn[r][k] = along_scene.turn[r][axes.of[k]];
-      all.push_back(body);
-    }
+    all.push_back(body_of(n, n.depth, kGap * s.fluid.spacing, s));
+  }
+  for (Solid<double>& body : all) {
+    const Solid<double> along_scene = body;
+    const double center[3] = {body.center.x, body.center.y, body.center.z};
+    body.center = {center[axes.of[0]], center[axes.of[1]], center[axes.of[2]]};
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) body.turn[r][k] = along_scene.turn[r][axes.of[k]];
   }
   return all;
 }

@@ -81,7 +81,7 @@ void for_each_in_pipes(const Scene& s, const Put& put) {
 /// The casing of each emitter, as a solid. Lengths in h from Scene::origin(), along the scene's
 /// axes.
 std::vector<Solid<double>> casings_of(const Scene& scene);
-/// The casing and the bore of each emitter, along the internal axes.
+/// The casings of all emitters, then their bores, along the internal axes.
 std::vector<Solid<double>> casings_and_bores(const Scene& scene, const Axes& axes);
 
 /// Rows of the table of steps of a solver: at least those of one update.

@@ -84,7 +84,6 @@ class CudaExec : public CudaSums {
   /// to come need not be repeated. Present lists are lost.
   void enlarge_lists(int n);
 
-  CountedRows counted(const RowState* state, int most) const { return {state, most}; }
   static int rows_now(const RowState&) {
     throw Error(ExitCode::internal, "the number of rows is on the device");
   }

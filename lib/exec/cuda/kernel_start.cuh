@@ -17,16 +17,13 @@ constexpr int kBlock = 128;
 /// and in a kernel the first row and the end. A kernel asks before wait_for_previous(), which hides
 /// the load: see CudaExec::rows_changed().
 inline int most(int n) { return n; }
-inline int most(const CountedRows& rows) { return rows.most; }
 /// The threads of a warp have adjacent rows from a multiple of 32 on: those of some other range
 /// would touch more lines of memory.
 PBF_HD constexpr int aligned(const RowRange& rows) { return rows.first & ~31; }
 inline int most(const RowRange& rows) { return rows.last - aligned(rows); }
 __device__ __forceinline__ int first_of(int) { return 0; }
-__device__ __forceinline__ int first_of(const CountedRows&) { return 0; }
 __device__ __forceinline__ int first_of(const RowRange& rows) { return aligned(rows); }
 __device__ __forceinline__ int end_of(int n) { return n; }
-__device__ __forceinline__ int end_of(const CountedRows& rows) { return int(rows.state->rows); }
 __device__ __forceinline__ int end_of(const RowRange& rows) {
   return rows.state ? int(rows.state->rows) : rows.last;
 }
@@ -43,7 +40,6 @@ __device__ __forceinline__ int end_of(const RowsBetween& rows) { return *rows.la
 
 /// Whether a launch leaves out row i, which is below the end.
 __device__ __forceinline__ bool leaves_out(int, int) { return false; }
-__device__ __forceinline__ bool leaves_out(const CountedRows&, int) { return false; }
 __device__ __forceinline__ bool leaves_out(const RowsBetween& rows, int i) {
   return i < *rows.first;
 }

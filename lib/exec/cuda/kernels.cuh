@@ -13,9 +13,7 @@ namespace pbf::PBF_VARIANT {
 /// Largest numbers of particles for which 16, 8, 4 and 2 threads share a neighbor sum, and for
 /// which several share the making of a list (which changes no bit). Measured on an H200
 /// (kernels/PERFORMANCE.md).
-#ifdef PBF_ONE_THREAD  // compiles sooner
-constexpr int kSixteenLanes = 0, kEightLanes = 0, kFourLanes = 0, kTwoLanes = 0;
-#elif defined(PBF_PINNED)
+#ifdef PBF_PINNED
 constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
 #else
 constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;

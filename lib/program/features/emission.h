@@ -55,7 +55,8 @@ SinkBox<Real> row_of(const field::SinkBoxes&);
 
 using PipeNeeds = Needs<Looks<field::nozzles>, Looks<field::nozzle_steps>,
                         Looks<field::nozzle_columns>, Looks<field::emission_row>>;
-/// Of a pass that lists new rows as near solids: casings are some.
+/// Of a pass that lists new rows as near solids: casings are some. Other rows in and near pipes are
+/// listed already.
 using MarkNeeds =
     Needs<Places<field::near_way_left>, Places<field::near_row>, Places<field::near_count>>;
 
@@ -174,11 +175,11 @@ struct HoldPredicted {
   static constexpr PassText text{"hold predicted", "predict"};
   using Needs = pbf::Needs<PipeNeeds, Updates<field::position, W::mark>, Updates<field::velocity>,
                            If<is_second_order, Updates<field::free_velocity>>, Reads<field::id>,
-                           MarkNeeds, Adds<field::emission_sums>>;
+                           Adds<field::emission_sums>>;
   template <class G>
   static void launch(const G& c) {
     c.items(HoldPredictedPass<typename G::Real>{
-        c.p, pipes_of<true>(c, c[field::emission_sums].sums()), c[field::position],
+        c.p, pipes_of<false>(c, c[field::emission_sums].sums()), c[field::position],
         c[field::velocity], c.declared(field::free_velocity), c[field::id]});
   }
 };
@@ -186,11 +187,11 @@ struct HoldPredicted {
 struct FindPipeRows {
   static constexpr PassText text{"pipe rows", "neighbors"};
   using Needs = pbf::Needs<Looks<field::nozzles>, Reads<field::position>, Places<field::pipe_row>,
-                           Places<field::pipe_count>, MarkNeeds>;
+                           Places<field::pipe_count>>;
   template <class G>
   static void launch(const G& c) {
     c.items(1, ClearPipeRowsPass{c[field::pipe_count]});
-    c.items(FindPipeRowsPass<typename G::Real>{pipes_of<true>(c, nullptr), c[field::position],
+    c.items(FindPipeRowsPass<typename G::Real>{pipes_of<false>(c, nullptr), c[field::position],
                                                c[field::pipe_row], c[field::pipe_count]});
   }
 };

@@ -159,8 +159,8 @@ struct NearSolids {
       scene.walls = c.p.boundary;
       scene.solid = c.data(field::solids);
       scene.before = c.data(field::solids_before);
-      scene.solids = int(solids_in(s));
-      scene.obstacles = int(s.obstacles.size());
+      scene.casings = int(s.emitters.size());
+      scene.solids = int(s.obstacles.size()) + scene.casings;
       scene.flat = c.p.dimensions == 2;
       scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::clamp_sums),
                               c.data(field::patches));

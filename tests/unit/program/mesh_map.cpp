@@ -207,7 +207,7 @@ struct OneSolid {
     scene.walls.extent = {40, 40, 40};
     scene.walls.walls = 63;
     scene.solid = &posed;
-    scene.solids = scene.obstacles = 1;
+    scene.solids = 1;
   }
   OneSolid(const OneSolid&) = delete;
   Vec3<double> end(const Vec3<double>& from, const Vec3<double>& to) const {

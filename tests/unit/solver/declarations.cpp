@@ -89,6 +89,7 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/emitters", {}},
     {"tests/regression/frozen/emitters",
      {"time.order=1", "obstacles=[]", "solver.substeps=3", "viscosity.xsph=0.1"}},
+    {"tests/regression/frozen/emitters", {"bodies.0.velocity=[-3, 0, 0]", "time.step=0.004"}},
     {"tests/regression/frozen/emitters", {"emitters=[]", "gauges=[]"}},
 };
 
