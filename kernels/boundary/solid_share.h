@@ -63,6 +63,14 @@ PBF_HD HalfSpace<Real> curvature_moment(Real q) {
   return {m, q < Real(0) ? -dm : dm};
 }
 
+/// F(q), the first moment of the kernel over a half space at distance q >= 0: the integral of z W,
+/// z the height of a place over the point. By shells, or rings in the plane, it is m(q), or 2 m(q).
+template <Smoothing S, class Real>
+PBF_HD Real first_moment(Real q) {
+  const Real m = curvature_moment<S, true>(q).density;
+  return dimensions_of(S) == 2 ? m + m : m;
+}
+
 /// The share of a round body, and its derivatives.
 template <class Real>
 struct RoundShare {

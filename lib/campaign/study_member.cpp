@@ -39,12 +39,12 @@ bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
   LogRow row;
   row.measures = solver.diagnose();
   row.measures.work = work.until(row.measures);
-  if (has_motion(scene)) solver.readings(Series::measures, Interval::ends), work.take(row.measures);
+  if (has_work(scene)) solver.readings(Series::measures, Interval::ends), work.take(row.measures);
   energy.follow(row.measures);
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
   for (const auto& c : run_layout::log_columns()) out.log[c.name].push_back(c.value(row));
-  if (has_motion(scene)) out.log["work"].push_back(row.measures.work);
+  if (has_work(scene)) out.log["work"].push_back(row.measures.work);
   const Diagnostics& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;
   out.status = "diverged";
@@ -67,7 +67,7 @@ std::vector<FurtherColumn> further_columns(const Scene& scene) {
           }
         },
         g.kind);
-  if (has_motion(scene)) all.push_back({"work", "J"});
+  if (has_work(scene)) all.push_back({"work", "J"});
   return all;
 }
 

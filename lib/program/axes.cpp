@@ -39,7 +39,7 @@ Scene in_internal_axes(const Scene& scene, const Axes& axes) {
     s.domain.max[k] = scene.domain.max[from];
     s.gravity[k] = scene.gravity[from];
   }
-  for (auto* names : {&s.domain.open, &s.domain.periodic})
+  for (auto* names : {&s.domain.open, &s.domain.periodic, &s.domain.friction_on})
     for (std::string& name : *names) name[0] = char('x' + axes.inside(name[0] - 'x'));
   return s;
 }

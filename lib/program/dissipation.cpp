@@ -4,13 +4,16 @@
 
 #include "lib/program/hyperviscosity.h"
 #include "lib/program/plan.h"
+#include "lib/scene/viscosity.h"
 
 namespace pbf::program_module {
 
 bool dissipates(const Scene& s, Dissipation by) {
   switch (by) {
     case Dissipation::viscosity:
-      return s.viscosity && s.viscosity->xsph != 0;
+      return viscous_sweeps(s).sweeps > 0;
+    case Dissipation::friction:
+      return viscous_sweeps(s).sweeps > 0 && has_friction(s);
     case Dissipation::hyperviscosity:
       return hyperviscosity_of(s).every > 0;
     case Dissipation::confinement:

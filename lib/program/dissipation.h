@@ -12,9 +12,9 @@ namespace pbf::program_module {
 struct Plan;
 
 /// In the order of their columns.
-enum class Dissipation { viscosity, hyperviscosity, confinement, damping };
-inline constexpr const char* kDissipationNames[] = {"viscosity", "hyperviscosity", "confinement",
-                                                    "damping"};
+enum class Dissipation { viscosity, friction, hyperviscosity, confinement, damping };
+inline constexpr const char* kDissipationNames[] = {"viscosity", "friction", "hyperviscosity",
+                                                    "confinement", "damping"};
 
 /// Whether the scene has this one.
 bool dissipates(const Scene& scene, Dissipation by);

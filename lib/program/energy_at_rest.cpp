@@ -30,6 +30,7 @@ Vessel vessel_of(const Scene& scene, const Plan& plan) {
     const double g = s.gravity[i];
     v.extent[k] = (s.domain.max[i] - s.domain.min[i]) / s.h();
     if (v.dimensions == 2 && k == 1) continue;
+    if (s.domain.is_periodic(k)) continue;
     v.pull[k] = std::fabs(g);
     v.mirrored[k] = g > 0;
     const bool low_needed = g <= 0, high_needed = g >= 0;

@@ -43,7 +43,7 @@ struct FeatureList {
 };
 
 using Features =
-    FeatureList<Motion, NearSolids, Constraint, Levels, Correction, Emission, XsphViscosity,
+    FeatureList<Motion, NearSolids, Constraint, Levels, Correction, Emission, Viscosities,
                 VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
 using Passes = Features::Passes;
 

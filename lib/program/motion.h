@@ -8,6 +8,7 @@
 #include "kernels/boundary/moving.h"
 #include "kernels/boundary/obstacle.h"
 #include "lib/program/axes.h"
+#include "lib/scene/periodic.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::program_module {
@@ -26,6 +27,9 @@ inline bool has_moving_obstacles(const Scene& scene) { return moving_obstacles(s
 inline bool has_motion(const Scene& scene) {
   return scene.tank_motion || has_moving_obstacles(scene);
 }
+
+/// Whether something does work on the fluid that its energy does not contain. Emission is apart.
+inline bool has_work(const Scene& scene) { return has_motion(scene) || has_drive(scene); }
 
 /// At `time` (s since the start). Throws Error(internal) if the file of the motion was not read.
 Pose pose_of(const Scene& scene, const Obstacle& obstacle, double time);

@@ -252,6 +252,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sor_factors = chebyshev_factors(s.solver.iterations);
   plan.hyperviscosity = hyperviscosity_of(s);
+  plan.viscosity = viscous_sweeps(s);
   plan.substeps = s.solver.substeps;
   plan.lists_per_update = lists_per_update(s);
   plan.finest_level = finest_level(s);

@@ -17,6 +17,7 @@
 #include "lib/program/obstacles.h"
 #include "lib/program/program.h"
 #include "lib/scene/scene.h"
+#include "lib/scene/viscosity.h"
 
 namespace pbf::program_module {
 
@@ -50,6 +51,7 @@ struct Plan {
   /// and on levels (kernels/README.md, "Step length").
   double sor = 1;
   Hyperviscosity hyperviscosity;
+  ViscousSweeps viscosity;  ///< of updates of one step; shorter steps have a smaller factor
   /// Factors on omega, one per iteration of a substep; empty: all are 1 (solver.method: jacobi).
   std::vector<double> sor_factors;
   int substeps = 1;

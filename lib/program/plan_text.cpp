@@ -84,6 +84,17 @@ std::string memory_part(const Plan& plan, const Scene& s) {
   return out;
 }
 
+/// What the viscosity is, beside that of the method.
+std::string viscosity_line(const Plan& plan, const Scene& s) {
+  if (plan.viscosity.sweeps == 0) return "";
+  const double nu = kinematic_viscosity(s), own = kOwnViscosity * s.fluid.spacing;
+  return fmt::format(
+      "  viscosity {:.3g} m^2/s{}, {} sweep{} of factor {:.3g}; the method itself has about {:.2g} "
+      "m^2/s per m/s of the flow, as much from {:.3g} m/s on\n",
+      nu, s.viscosity->kinematic ? "" : " with this time.step", plan.viscosity.sweeps,
+      plan.viscosity.sweeps == 1 ? "" : "s", plan.viscosity.factor, own, nu / own);
+}
+
 std::string passes_part(const Plan& plan, const Scene& s) {
   std::string out =
       plan.finest_level == 0
@@ -103,6 +114,7 @@ std::string passes_part(const Plan& plan, const Scene& s) {
     out += fmt::format(
         "  omega {:.3g} in each iteration{}; safe up to {:.3g} with {} in a substep\n", plan.sor,
         s.solver.sor ? "" : " (solver.sor: auto)", sor_limit(s), s.solver.iterations);
+  out += viscosity_line(plan, s);
   if (plan.substeps > 1)
     out += fmt::format(
         "  {} substeps of {:.4g} s on {} list{}: at most {:.3g} h of way on one list\n",

@@ -51,6 +51,7 @@ double energy_scale(const Diagnostics& m, const Scene& s, const Plan& plan) {
 double energy_of_height(const Diagnostics& m, const Scene& s, double mass) {
   double height = 0;
   for (std::size_t a = 0; a < 3; ++a) {
+    if (s.domain.is_periodic(int(a))) continue;
     const double g = s.gravity[a], x = m.center_of_mass[a];
     height += mass * std::fabs(g) * (g > 0 ? s.domain.max[a] - x : x - s.domain.min[a]);
   }

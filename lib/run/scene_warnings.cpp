@@ -234,6 +234,7 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
   const int iterations = most_iterations(s);
   if (g == 0 || iterations == 0) return 0;
   const int down = level_axis(s);  // along which the fluid rests on a wall
+  if (s.domain.is_periodic(down)) return 0;
   // Without walls below and at the sides the fluid does not stay.
   const std::string ceiling =
       std::string(1, char('x' + down)) + (s.gravity[down] < 0 ? "_max" : "_min");

@@ -6,6 +6,7 @@
 #include "lib/scene/periodic.h"
 #include "lib/scene/scene_rules.h"
 #include "lib/scene/surface.h"
+#include "lib/scene/viscosity.h"
 
 namespace pbf::scene_module {
 namespace {
@@ -60,27 +61,35 @@ class PeriodicChecker : public SceneRules {
           kAxes[a], rounded(length), rounded(least));
   }
 
-  /// What has a potential, or depends on the place, has no period.
+  /// Gravity along a periodic axis drives a flow, which must be held by something.
   void check_forces(std::size_t a) {
-    constexpr const char* kNoPotential =
+    constexpr const char* kFalls =
         "its component along {} is {}, and fluid that returns through a periodic face would fall "
         "for ever; give 0, or remove {} from domain.periodic";
-    if (good(s_.gravity) && s_.gravity[a] != 0)
-      add(s_.gravity, kNoPotential, kAxes[a], s_.gravity[a], kAxes[a]);
-    if (s_.settle && s_.settle->gravity && good(s_.settle->gravity) &&
-        (*s_.settle->gravity)[a] != 0)
-      add(s_.settle->gravity, kNoPotential, kAxes[a], (*s_.settle->gravity)[a], kAxes[a]);
+    if (good(s_.gravity) && s_.gravity[a] != 0 && !has_friction(s_))
+      add(s_.gravity,
+          "its component along {} is {}, and fluid that returns through a periodic face would fall "
+          "for ever; give friction to walls or obstacles (domain.friction: 1), or 0 here, or "
+          "remove {} from domain.periodic",
+          kAxes[a], s_.gravity[a], kAxes[a]);
+    if (!s_.settle || !good(s_.settle->gravity, s_.gravity)) return;
+    const double g = s_.settle->gravity.value_or(s_.gravity)[a];
+    if (g != 0) add(s_.settle->gravity, kFalls, kAxes[a], g, kAxes[a]);
   }
 
   /// An obstacle has no images. Its fluid is up to kClear away from it
   /// (lib/program/posed_solids.h).
   void check(const Obstacle& o, std::size_t a) {
+    if (!good_obstacle(o)) return;
+    // A plane along the axis is its own image, wherever it moves without turning.
+    if (const auto* plane = std::get_if<obstacle_keys::Plane>(&o.shape);
+        plane && plane->normal[a] == 0 && (!o.motion || keeps_direction(*o.motion)))
+      return;
     if (o.motion)
       return add(o.motion->kind,
-                 "{} moves, and obstacles have no images beyond periodic faces; let it stand, or "
-                 "remove domain.periodic",
-                 o.name);
-    if (!good_obstacle(o)) return;
+                 "{} moves, and obstacles have no images beyond periodic faces; let it stand, make "
+                 "it a plane along {} that does not turn, or remove domain.periodic",
+                 o.name, kAxes[a]);
     const Solid<double> solid = solid_in_metres(o, s_);
     const Vec3<double> up{double(a == 0), double(a == 1), double(a == 2)};
     const double middle[3] = {solid.center.x, solid.center.y, solid.center.z};
@@ -92,6 +101,11 @@ class PeriodicChecker : public SceneRules {
           "reaches {0} = {1}, and obstacles have no images beyond periodic faces: leave 1.5 "
           "smoothing lengths, {0} from {2} to {3}; the flow is the same if all is moved along {0}",
           kAxes[a], rounded(low < from - 1e-9 * clear ? low : high), rounded(from), rounded(to));
+  }
+  bool keeps_direction(const Motion& m) const {
+    if (!good(m.kind)) return true;
+    if (m.kind == MotionKind::sine) return !m.axis;
+    return m.kind == MotionKind::velocity && m.angular == Double3{};
   }
   static constexpr double kClear = 1.5;  ///< h
   static double rounded(double x) { return std::stod(fmt::format("{:.6g}", x)); }

@@ -32,6 +32,7 @@ class Checker : public SceneRules {
     check_gauges(p_, problems_);
     check_emitters(p_, problems_);
     check_periodic(p_, problems_);
+    check_viscosity(p_, problems_);
     check_time();
     check_solver();
     if (domain) check_rounding();

@@ -23,7 +23,8 @@ KeyRows motion_rows() {
            "of the bodies when the run begins."),
        {"solver", "The constraint solver."},
        optional_block(KEY(tensile), "Artificial pressure against clusters (s_corr)."),
-       optional_block(KEY(viscosity), "XSPH viscosity."),
+       optional_block(KEY(viscosity),
+                      "Viscosity, of a share per update (xsph) or in physical units (kinematic)."),
        optional_block(KEY(vorticity), "Vorticity confinement.")},
       {key(KEY(gravity), number("m/s^2", kRate),
            "Acceleration of gravity, [x, y, z]. One number is its magnitude, straight down; "
@@ -146,7 +147,14 @@ KeyRows motion_rows() {
            "Distance, in h, at which the artificial pressure equals k."),
        key(KEY(tensile->n), number("", {1, 16}), "Exponent."),
        key(KEY(viscosity->xsph), number("", {0, 10}),
-           "Factor c, not a viscosity in Pa s or m^2/s; stable up to 1.", scaled(linear)),
+           "Factor c, not a viscosity in Pa s or m^2/s; stable up to 1. It stands for another "
+           "viscosity with every step and spacing. 0 beside kinematic.",
+           scaled(linear)),
+       key(KEY(viscosity->kinematic), number("m^2/s", {0, 1e9, true}),
+           "Kinematic viscosity nu: 1e-6 for water. It acts besides the viscosity of the method "
+           "itself, about 0.2 times speed times fluid.spacing. pbf plan compares the two. auto: "
+           "none.",
+           automatic),
        key(KEY(vorticity->epsilon), number("1/s", {0, 1000}),
            "Strength. The force is limited to twice the rate at which neighbors approach, so that "
            "it adds no more energy than the flow loses.")}};

@@ -25,6 +25,10 @@ KeyRows obstacle_rows() {
       return requires { Shape::Body::endless; }
       != bounded;
     });
+  all.keys.push_back(key(OBSTACLE(friction), number("", {0, 1}),
+                         "Friction of its surface, as domain.friction of walls: 0 slides, 1 does "
+                         "not slip. An obstacle that moves takes the fluid along.",
+                         off_at(0)));
   all.keys.push_back(key(OBSTACLE(loads), plain,
                          "Sums the force and the torque of the fluid on it; columns "
                          "load/NAME/force_x and so on of the log."));

@@ -42,6 +42,13 @@ KeyRows start_rows() {
            "Axes whose two faces are joined, as a list: what leaves through one face enters "
            "through "
            "the other. At least 3 h long, best a whole number of fluid.spacing."),
+       key(KEY(domain.friction), number("", {0, 1}),
+           "Friction of the walls, by the fluid's viscosity. 0: fluid slides along them. 1: no "
+           "slip, as if the fluid went on behind the wall and moved with it. Between: that share "
+           "of the force.",
+           off_at(0)),
+       key(KEY(domain.friction_on), one_of({kFaceNames.begin(), kFaceNames.end()}),
+           "Faces that have the friction, as a list; []: all walls."),
        key(KEY(domain.loads), plain,
            "Sums the force and the torque of the fluid on each wall; columns load/x_min/force_x "
            "and so on of the log."),

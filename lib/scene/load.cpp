@@ -62,6 +62,12 @@ void choose_step(PlacedScene& placed, Problems& problems) {
   step = Time{}.step;
 }
 
+/// A kinematic viscosity alone is all the viscosity there is.
+void choose_viscosity(PlacedScene& placed) {
+  std::optional<Viscosity>& v = placed.scene.viscosity;
+  if (v && v->kinematic && !placed.places.contains("viscosity.xsph")) v->xsph = 0;
+}
+
 /// Keeps the places of paths whose files are read later.
 void keep_places(PlacedScene& placed) {
   Scene& s = placed.scene;
@@ -98,6 +104,7 @@ Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic) {
   placed.bad.insert(bad.begin(), bad.end());
   if (automatic != nullptr) *automatic = placed.scene.time.step == 0;
   if (placed.scene.time.step == 0) choose_step(placed, problems);
+  choose_viscosity(placed);
   check_scene(placed, problems);
   keep_places(placed);
   return placed.scene;

@@ -25,6 +25,7 @@ struct Obstacle {
   std::string name;
   obstacle_keys::Any shape = obstacle_keys::Box{};
   bool loads = false;            ///< the fluid's force on it is recorded
+  double friction = 0;           ///< 0 (free slip) to 1 (no slip)
   std::optional<Motion> motion;  ///< absent: it is fixed
   bool operator==(const Obstacle&) const = default;
 

@@ -1,6 +1,7 @@
 // Periodic axes: their lengths, and distances between places that are joined through their faces.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -21,6 +22,12 @@ inline Double3 periods(const Scene& s) {
   for (const int a : periodic_axes(s))
     p[std::size_t(a)] = s.domain.max[std::size_t(a)] - s.domain.min[std::size_t(a)];
   return p;
+}
+/// Whether gravity drives fluid along a periodic axis, where it has no potential but does work.
+inline bool has_drive(const Scene& s) {
+  const std::vector<int> axes = periodic_axes(s);
+  return std::any_of(axes.begin(), axes.end(),
+                     [&](int a) { return s.gravity[std::size_t(a)] != 0; });
 }
 /// A displacement or the shortest of those that differ from it by whole periods.
 inline double shortest(double displacement, double period) {

@@ -61,7 +61,9 @@ struct Domain {
   Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
   bool loads = false;             ///< the fluid's forces on the walls are recorded
-  std::vector<std::string> periodic{};  ///< axes whose two faces are joined: x y z
+  std::vector<std::string> periodic{};     ///< axes whose two faces are joined: x y z
+  double friction = 0;                     ///< of the walls, 0 (free slip) to 1 (no slip)
+  std::vector<std::string> friction_on{};  ///< faces that have it; empty: all
   bool operator==(const Domain&) const = default;
   bool is_open(int axis, bool high) const {
     return std::find(open.begin(), open.end(), kFaceNames[std::size_t(2 * axis + high)]) !=
@@ -72,6 +74,13 @@ struct Domain {
            periodic.end();
   }
   bool has_wall(int axis, bool high) const { return !is_open(axis, high) && !is_periodic(axis); }
+  /// The friction of a face in the order of kFaceNames; 0 where there is no wall.
+  double friction_of(int face) const {
+    const bool on =
+        friction_on.empty() || std::find(friction_on.begin(), friction_on.end(),
+                                         kFaceNames[std::size_t(face)]) != friction_on.end();
+    return on && has_wall(face / 2, face % 2 == 1) ? friction : 0;
+  }
   /// Whether all six faces are walls.
   bool is_closed() const { return open.empty() && periodic.empty(); }
 };
@@ -140,9 +149,11 @@ struct Tensile {
   bool operator==(const Tensile&) const = default;
 };
 
-/// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17), symmetric.
+/// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17), symmetric. Its
+/// strength is a share per update, or follows from a kinematic viscosity (lib/scene/viscosity.h).
 struct Viscosity {
-  double xsph = 0.05;  ///< c, 0..1 stable
+  double xsph = 0.05;                 ///< c, 0..1 stable; the loader makes it 0 beside `kinematic`
+  std::optional<double> kinematic;  ///< m^2/s, nu
   bool operator==(const Viscosity&) const = default;
 };
 

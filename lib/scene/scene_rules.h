@@ -124,5 +124,6 @@ void check_motions(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);
 void check_emitters(const PlacedScene& placed, Problems& problems);
 void check_periodic(const PlacedScene& placed, Problems& problems);
+void check_viscosity(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::scene_module

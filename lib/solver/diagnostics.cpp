@@ -90,11 +90,16 @@ Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
   m.kinetic_energy = 0.5 * mass * h * h * s.speed_squared;
   for (int k = 0; k < 3; ++k) {
     const auto axis = std::size_t(plan.axes.of[k]);
-    m.potential_energy -= mass * scene.gravity[axis] * h * (s.x[k] - lag * s.v[k]);
-    // The reference of the energy is the lowest corner of the box, into which gravity points.
-    const double extent = scene.domain.max[axis] - scene.domain.min[axis];
-    m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * of_start;
     m.momentum[axis] = mass * h * s.v[k];
+    // Along a periodic axis gravity has no potential: its work is that of a drive.
+    if (scene.domain.is_periodic(int(axis))) {
+      m.power += scene.gravity[axis] * m.momentum[axis];
+    } else {
+      m.potential_energy -= mass * scene.gravity[axis] * h * (s.x[k] - lag * s.v[k]);
+      // The reference of the energy is the lowest corner of the box, into which gravity points.
+      const double extent = scene.domain.max[axis] - scene.domain.min[axis];
+      m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * of_start;
+    }
     m.center_of_mass[axis] = origin[axis] + h * s.x[k] / (counted > 0 ? counted : 1);
     m.front[axis] = origin[axis] + h * s.front[k];
   }

@@ -51,8 +51,8 @@ struct Diagnostics {
   std::int64_t unresolved = 0;
   double relative_way_max = 0;  ///< h, the longest such displacement in a step; 0: none
   double velocity_lag = 0;      ///< s, by how much momenta are earlier than `time`
-  bool moved = false;           ///< obstacles or the tank have a prescribed motion
-  double power = 0;             ///< W, of the inertial forces by the tank's motion
+  bool moved = false;           ///< obstacles, the tank or gravity along a periodic axis do work
+  double power = 0;             ///< W, of the tank's motion, and of gravity along periodic axes
   double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
   double inflow = 0;            ///< J, by emitters less what sinks took, since the start
   std::int64_t particles = 0;   ///< their present number

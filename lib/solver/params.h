@@ -75,7 +75,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   }
   // Predictions take over a share of viscosities, too, and a share of that share.
   const double now = is_second_order(s) ? 1 - kCarriedPush : 1;
-  if (s.viscosity) p.xsph = Real(s.viscosity->xsph * now);
+  p.xsph = Real(factor_of_sweep(s, plan.viscosity.sweeps) * now);
   p.hyperviscosity = Real(plan.hyperviscosity.factor * now);
   if (plan.hyperviscosity.every > 0) p.calm = Real(h / (gravity_of(s) * kCalmSpeed * kCalmSpeed));
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);

@@ -219,12 +219,12 @@ class StepSolver final : public Solver, public Inspection {
   }
   void measure_motion(Diagnostics& m) {
     m.inflow = inflow_energy(stepper_->emission(), scene_, plan_);
-    m.moved = has_motion(scene_) || comes_and_goes(scene_);
+    m.moved = has_work(scene_) || comes_and_goes(scene_);
     const double unit = plan_.mass * scene_.h() * scene_.h();
     if (scene_.tank_motion)
-      m.power = unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - m.velocity_lag,
-                                                  scene_.time.step),
-                                       m.velocity_lag, scene_.time.step);
+      m.power += unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - m.velocity_lag,
+                                                   scene_.time.step),
+                                        m.velocity_lag, scene_.time.step);
     if (has_moving_obstacles(scene_))
       for (const Load& l : stepper_->loads(Interval::goes_on)) m.solid_work += unit * l.work;
   }

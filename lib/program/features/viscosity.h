@@ -1,8 +1,32 @@
-// XSPH viscosity, after the last substep of an update.
+// Viscosity, after the last substep of an update: sweeps of XSPH, and the friction of walls and
+// obstacles after each.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
+#include "kernels/pass_friction.h"
 #include "kernels/pass_xsph.h"
 #include "lib/program/features/motion.h"
+#include "lib/scene/viscosity.h"
+
+namespace pbf::program_module {
+inline bool has_moving_friction(const Scene& s) {
+  return has_obstacle_friction(s) && has_moving_obstacles(s);
+}
+inline bool has_friction_on_maps(const Scene& s) { return has_obstacle_friction(s) && has_maps(s); }
+inline bool has_friction_loads(const Scene& s) { return has_friction(s) && has_loads(s); }
+/// Friction needs the scene of solids for obstacles, and for the book of loads.
+inline bool has_friction_at_solids(const Scene& s) {
+  return has_obstacle_friction(s) || has_friction_loads(s);
+}
+}  // namespace pbf::program_module
+
+namespace pbf::program_module::field {
+/// Of each obstacle.
+inline constexpr struct FrictionRows : Numbers {
+} obstacle_friction{{"obstacle friction", per_obstacle, Life::run}};
+}  // namespace pbf::program_module::field
 
 namespace pbf::PBF_VARIANT {
 
@@ -59,14 +83,78 @@ struct XsphPredictSort {
   }
 };
 
-struct XsphViscosity {
-  using Passes = PassList<Xsph, XsphPredictSort>;
-  static void add(const Scene& s, auto& b) {
-    if (dissipates(s, Dissipation::viscosity))
-      b.after(Xsph());
-    else
-      b.left_out("xsph pass", "no key viscosity");
+struct Viscosities;
+
+struct Friction {
+  static constexpr PassText text{"friction", "xsph", "lower friction"};
+  using Needs =
+      pbf::Needs<Reads<field::position>, Updates<field::velocity>, Adds<field::dissipation>,
+                 If<has_friction_at_solids, Looks<field::solid_scene>>,
+                 If<has_obstacle_friction, Looks<field::solids>, Looks<field::obstacle_friction>>,
+                 If<has_moving_friction, Looks<field::solid_velocity>>,
+                 If<has_friction_on_maps, Looks<field::solid_maps>>,
+                 If<has_friction_loads, BookNeeds>>;
+  template <class G>
+  static void launch(const G& c) {
+    c.with_smoothing([&](auto s) {
+      using Real = typename G::Real;
+      const auto& given = c.template memory<Viscosities>();
+      FrictionPass<Real, decltype(s)::value> pass;
+      pass.p = c.p;
+      pass.strength = given.scale * c.p.xsph;
+      std::copy(std::begin(given.of_wall), std::end(given.of_wall), std::begin(pass.of_wall));
+      pass.clear = given.clear;
+      pass.bounds = c.template memory<NearSolids>().solids.bounds;
+      pass.obstacles = given.obstacles;
+      pass.solid_scene = c.declared(field::solid_scene);
+      pass.of_obstacle = c.declared(field::obstacle_friction);
+      pass.solid_velocity = c.declared(field::solid_velocity);
+      pass.booked = has_loads(c.scene);
+      pass.position = c[field::position];
+      pass.velocity = c[field::velocity];
+      pass.book = viscous_book<Dissipation::friction>(c);
+      c.items(pass);
+    });
   }
+};
+
+struct Viscosities {
+  using Passes = PassList<Xsph, XsphPredictSort, Friction>;
+  static void add(const Scene& s, auto& b) {
+    const int sweeps = viscous_sweeps(s).sweeps;
+    if (sweeps == 0) b.left_out("xsph pass", "no key viscosity");
+    for (int k = 0; k < sweeps; ++k) {
+      b.after(Xsph());
+      if (has_friction(s)) b.after(Friction());
+    }
+    if (!has_friction(s)) b.left_out("friction pass", "friction is 0 on all walls and obstacles");
+  }
+
+  template <class Real>
+  struct Memory : NoMemory {
+    Real scale = 0;        ///< of FrictionPass::strength
+    Real of_wall[6] = {};  ///< friction
+    Bounds<Real> clear{};  ///< far from walls with friction
+    int obstacles = 0;     ///< 0 if none has friction
+
+    void make(auto& c) {
+      if (!has_friction(c.scene)) return;
+      const Scene s = in_internal_axes(c.scene, c.plan.axes);
+      scale = Real(friction_scale(s));
+      Box<Real> walls = c.p.boundary;
+      for (int face = 0; face < 6; ++face) {
+        of_wall[face] = Real(s.domain.friction_of(face));
+        if (s.dimensions == 2 && face / 2 == 1) of_wall[face] = 0;
+        if (!(of_wall[face] > Real(0))) walls.walls &= ~(1u << face);
+      }
+      clear = clear_of(walls);
+      if (!has_obstacle_friction(s)) return;
+      obstacles = int(s.obstacles.size());
+      std::vector<Real> each(std::size_t(solids_in(s)), Real(0));
+      for (std::size_t k = 0; k < s.obstacles.size(); ++k) each[k] = Real(s.obstacles[k].friction);
+      c.put(field::obstacle_friction, each);
+    }
+  };
 };
 
 }  // namespace pbf::PBF_VARIANT
