@@ -44,6 +44,10 @@ class ViscosityChecker : public SceneRules {
         add(s_.domain.friction_on, "{} is no wall ({}); remove it", face,
             std::string(s_.domain.is_periodic(axis) ? "domain.periodic" : "domain.open"));
     }
+    if (s_.domain.friction_on.empty() && good(s_.domain.friction, s_.dimensions) &&
+        s_.domain.friction > 0 && !has_wall_friction(s_))
+      add(s_.domain.friction, "is {}, and no face of the domain is a wall; remove it",
+          s_.domain.friction);
     if (!s_.domain.friction_on.empty() && good(s_.domain.friction) && s_.domain.friction == 0)
       add(s_.domain.friction_on, "names faces, and domain.friction is 0; give it, 1 for no slip");
   }

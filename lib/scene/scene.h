@@ -153,7 +153,7 @@ struct Tensile {
 /// strength is a share per update, or follows from a kinematic viscosity (lib/scene/viscosity.h).
 struct Viscosity {
   double xsph = 0.05;                 ///< c, 0..1 stable; the loader makes it 0 beside `kinematic`
-  std::optional<double> kinematic;  ///< m^2/s, nu
+  std::optional<double> kinematic{};  ///< m^2/s, nu
   bool operator==(const Viscosity&) const = default;
 };
 

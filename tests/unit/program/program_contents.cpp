@@ -42,28 +42,30 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
                     pressure = "artificial pressure in the delta loop: no key tensile",
                     rows = "particles that come and go: no keys emitters, sinks",
                     xsph = "xsph pass: no key viscosity",
+                    slip = "friction pass: friction is 0 on all walls and obstacles",
                     curl = "curl and confinement passes, curl array: no key vorticity",
                     loads =
                         "loads on the walls: domain.loads is false, and no obstacle has loads "
                         "or motion",
                     gauges = "gauges: no key gauges";
   CHECK(left_out("", {}) ==
-        Lines{tank, density, levels, pressure, rows, xsph, curl, loads, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.fused=false"}) ==
-        Lines{tank, levels, pressure, rows, xsph, curl, loads, gauges, order, calm});
+        Lines{tank, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.iterations=0"}) ==
         Lines{tank, iterations, "levels: grids coarser than h: solver.iterations is 0", rows, xsph,
-              curl, loads, gauges, order,
+              slip, curl, loads, gauges, order,
               "passes of hyperviscosity, its array: solver.iterations is 0"});
   CHECK(left_out("", {"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}) ==
-        Lines{tank, density, levels, pressure, rows, xsph, curl, loads, gauges, order, calm});
-  CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) ==
-        Lines{obstacles, tank, density, levels, pressure, rows, curl, loads, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
+  CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) == Lines{obstacles, tank, density, levels,
+                                                             pressure, rows, slip, curl, loads,
+                                                             gauges, order, calm});
   CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) ==
-        Lines{tank, density, levels, pressure, rows, xsph, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, slip, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,
                  {"solver.levels=on", "tensile.k=0.01", "solver.fused=false", "viscosity.xsph=0.1",
-                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{rows, order, calm});
+                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{rows, slip, order, calm});
 }
 
 TEST_CASE("program: passes are counted as often as they run at most, with what tests a tolerance") {
@@ -108,6 +110,7 @@ TEST_CASE("program: the arrays are those of its passes, each once, and those of 
         Row{"flow sides", kFlow, {}}, Row{"level home", "", {"solver.levels=on"}},
         Row{"free velocity", "", {"time.order=2"}}, Row{"velocity laplacian", "", {"time.order=2"}},
         Row{"wall pushes", "", {"time.order=2", "domain.loads=true"}},
+        Row{"obstacle friction", kStanding, {"viscosity.kinematic=1e-4", "obstacles.0.friction=1"}},
         Row{"level multiplier", "", {"solver.levels=on"}}}) {
     CAPTURE(row.field, row.set);
     CHECK(has_field(program_of(row.more, row.set), row.field));

@@ -70,9 +70,24 @@ TEST_CASE("what has no period is refused in a periodic scene by its key") {
              "post moves, and obstacles have no images");
   is_refused(kMinimal,
              {kTwo,
-              "obstacles=[{name: slope, shape: plane, point: [0.5, 0.5, 0.1], normal: [0, 0, "
+              "obstacles=[{name: slope, shape: plane, point: [0.5, 0.5, 0.1], normal: [1, 0, "
               "1]}]"},
              "leave 1.5");
+  // A plane along the axes is its own image, as long as it does not turn.
+  const auto lid = [](const std::string& motion) {
+    return "obstacles=[{name: lid, shape: plane, point: [0.5, 0.5, 0.9], normal: [0, 0, -1]" +
+           motion + "}]";
+  };
+  CHECK(parse_error(kMinimal, {kTwo, lid("")}) == "no error");
+  CHECK(parse_error(kMinimal, {kTwo, lid(", motion: {kind: velocity, velocity: [1, 0, 0]}")}) ==
+        "no error");
+  CHECK(parse_error(kMinimal, {kTwo, lid(", motion: {kind: sine, direction: [0, 0, 1], amplitude: "
+                                         "0.1, period: 1}")}) == "no error");
+  is_refused(kMinimal, {kTwo, lid(", motion: {kind: velocity, angular: [0, 10, 0]}")},
+             "make it a plane along x that does not turn");
+  is_refused(kMinimal,
+             {kTwo, lid(", motion: {kind: sine, axis: [0, 1, 0], amplitude: 5, period: 1}")},
+             "lid moves");
   is_refused(kMinimal, {kTwo, "tank_motion={kind: sine, axis: [0, 1, 0], amplitude: 5, period: 1}"},
              "so they have no period; give a direction");
   CHECK(parse_error(kMinimal, {kTwo,

@@ -49,6 +49,8 @@ Scene unlike_default() {
   hull.translate = {1.0 / 3, 0, -1e-7};
   s.bodies = {block, sphere, random, file, drum, hull};
   s.domain.loads = true;
+  s.domain.friction = 1.0 / 3;
+  s.domain.friction_on = {"z_max", "x_min"};
   Obstacle plane;
   plane.name = "odd name #1: [a], \"b\"";
   plane.shape = obstacle_keys::Plane{{1.0 / 3, 0, -1e-7}, {-1.0 / 7, 0, 1e5}};
@@ -57,6 +59,7 @@ Scene unlike_default() {
   box.shape =
       obstacle_keys::Box{{-0.1, -5, 1.0 / 3}, {0.1 + 0.2, 6, 0.5}, {0, -1.0 / 3, 0}, -360.0 / 7};
   box.loads = true;
+  box.friction = 1.0 / 7;
   Obstacle ball;
   ball.name = "x_minimum";
   ball.shape = obstacle_keys::Sphere{{1e-12, 0.02, 2.0 / 3}, 1.0 / 9};
@@ -126,7 +129,7 @@ Scene unlike_default() {
   s.solver.fused = false;
   s.solver.reproducible = true;
   s.tensile = Tensile{0.01, 0.2, 6};
-  s.viscosity = Viscosity{0.125};
+  s.viscosity = Viscosity{0.125, 1e-6 / 7};
   s.vorticity = Vorticity{2.5};
   s.settle = Settle{1.0 / 7, Double3{1.0 / 3, 0, -1e5}};
   s.measure_every = 17;
