@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2270},      {"kernels", 6800},   {"lib/base", 1850},    {"lib/campaign", 3850},
-    {"lib/exec", 6900}, {"lib/io", 4000},    {"lib/program", 8250}, {"lib/render", 3930},
-    {"lib/run", 6150},  {"lib/scene", 8250}, {"lib/solver", 3050},  {"lib/verify", 2200},
+    {"app", 2270},      {"kernels", 6880},   {"lib/base", 1850},    {"lib/campaign", 3850},
+    {"lib/exec", 6900}, {"lib/io", 4000},    {"lib/program", 8370}, {"lib/render", 3930},
+    {"lib/run", 6170},  {"lib/scene", 8350}, {"lib/solver", 3050},  {"lib/verify", 2200},
 };
 constexpr int kLongestFile = 300;
 
