@@ -11,7 +11,7 @@
 namespace pbf::scene_test {
 namespace {
 
-void is_refused(const std::vector<std::string>& set, const std::string& because) {
+void is_refused_there(const std::vector<std::string>& set, const std::string& because) {
   CAPTURE(set);
   const std::string error = parse_error(kMinimal, set);
   CAPTURE(error);
@@ -68,38 +68,41 @@ TEST_CASE("half the step has half the factor, with the same number of sweeps") {
 }
 
 TEST_CASE("the longest step of a viscosity is what its message says") {
-  is_refused({"viscosity.kinematic=50"},
-             "viscosity.kinematic: 50 m^2/s moves momentum farther in time.step (0.01 s) than 64 "
-             "sweeps over the neighbors reach; lower time.step to 0.00145 s, raise fluid.spacing, "
-             "or lower it to 7.23 m^2/s");
+  is_refused_there(
+      {"viscosity.kinematic=50"},
+      "viscosity.kinematic: 50 m^2/s moves momentum farther in time.step (0.01 s) than 64 "
+      "sweeps over the neighbors reach; lower time.step to 0.00145 s, raise fluid.spacing, "
+      "or lower it to 7.23 m^2/s");
   CHECK(parse_error(kMinimal, {"viscosity.kinematic=50", "time.step=0.00145"}) == "no error");
   CHECK(parse_error(kMinimal, {"viscosity.kinematic=7.23"}) == "no error");
-  is_refused({"viscosity.kinematic=1e9"}, "than 64 sweeps");
-  is_refused({"viscosity.kinematic=0"}, "is out of range, allowed: > 0");
-  is_refused({"viscosity.kinematic=-1"}, "is out of range");
+  is_refused_there({"viscosity.kinematic=1e9"}, "than 64 sweeps");
+  is_refused_there({"viscosity.kinematic=0"}, "is out of range, allowed: > 0");
+  is_refused_there({"viscosity.kinematic=-1"}, "is out of range");
   CHECK(parse_error(kMinimal, {"viscosity.kinematic=1e-300"}) == "no error");
 }
 
 TEST_CASE("two viscosities, friction without one, and friction where no wall is are refused") {
-  is_refused({"viscosity={kinematic: 0.001, xsph: 0.1}"},
-             "is all the viscosity there is, and viscosity.xsph is 0.1");
+  is_refused_there({"viscosity={kinematic: 0.001, xsph: 0.1}"},
+                   "is all the viscosity there is, and viscosity.xsph is 0.1");
   CHECK(parse_error(kMinimal, {"viscosity={kinematic: 0.001, xsph: 0}"}) == "no error");
-  is_refused({"domain.friction=1"}, "of which there is none; give viscosity");
-  is_refused({"domain.friction=1", "viscosity.xsph=0"}, "of which there is none");
-  is_refused({"obstacles=[{name: a, shape: sphere, center: [0.5, 0.5, 0.8], radius: 0.2, "
-              "friction: 0.5}]"},
-             "obstacles[0].friction: is 0.5, and walls hold fluid by its viscosity");
+  is_refused_there({"domain.friction=1"}, "of which there is none; give viscosity");
+  is_refused_there({"domain.friction=1", "viscosity.xsph=0"}, "of which there is none");
+  is_refused_there({"obstacles=[{name: a, shape: sphere, center: [0.5, 0.5, 0.8], radius: 0.2, "
+                    "friction: 0.5}]"},
+                   "obstacles[0].friction: is 0.5, and walls hold fluid by its viscosity");
   const std::string nu = "viscosity.kinematic=0.001";
-  is_refused({nu, "domain.friction=1.01"}, "out of range");
-  is_refused({nu, "domain.friction=1", "domain.friction_on=[w_min]"}, "\"w_min\" is not one of");
-  is_refused({nu, "domain.friction=1", "domain.friction_on=[z_max]", "domain.open=[z_max]"},
-             "z_max is no wall (domain.open)");
-  is_refused({nu, "domain.friction=1", "domain.friction_on=[x_min]", "domain.periodic=[x]"},
-             "x_min is no wall (domain.periodic)");
-  is_refused({nu, "domain.friction_on=[z_min]"}, "names faces, and domain.friction is 0");
-  is_refused({nu, "domain.friction=1", "domain.open=[x_min, x_max, y_min, y_max, z_min, z_max]"},
-             "no face of the domain is a wall");
-  is_refused({nu, "fluid.smoothing_ratio=1.2", "fluid.mass=1"}, "with so few neighbors");
+  is_refused_there({nu, "domain.friction=1.01"}, "out of range");
+  is_refused_there({nu, "domain.friction=1", "domain.friction_on=[w_min]"},
+                   "\"w_min\" is not one of");
+  is_refused_there({nu, "domain.friction=1", "domain.friction_on=[z_max]", "domain.open=[z_max]"},
+                   "z_max is no wall (domain.open)");
+  is_refused_there({nu, "domain.friction=1", "domain.friction_on=[x_min]", "domain.periodic=[x]"},
+                   "x_min is no wall (domain.periodic)");
+  is_refused_there({nu, "domain.friction_on=[z_min]"}, "names faces, and domain.friction is 0");
+  is_refused_there(
+      {nu, "domain.friction=1", "domain.open=[x_min, x_max, y_min, y_max, z_min, z_max]"},
+      "no face of the domain is a wall");
+  is_refused_there({nu, "fluid.smoothing_ratio=1.2", "fluid.mass=1"}, "with so few neighbors");
 }
 
 TEST_CASE("friction is that of the named faces that are walls, or of all walls") {
@@ -116,14 +119,14 @@ TEST_CASE("friction is that of the named faces that are walls, or of all walls")
 
 TEST_CASE("gravity drives fluid along a periodic axis if something has friction") {
   const std::vector<std::string> channel{"domain.periodic=[x]", "gravity=[0.1, 0, -9.81]"};
-  is_refused(channel, "would fall for ever; give friction to walls or obstacles");
+  is_refused_there(channel, "would fall for ever; give friction to walls or obstacles");
   std::vector<std::string> rough = channel;
   rough.insert(rough.end(), {"viscosity.kinematic=0.001", "domain.friction=1"});
   CHECK(parse_error(kMinimal, rough) == "no error");
   CHECK(has_drive(parse(kMinimal, rough)));
   CHECK_FALSE(has_drive(parse(kMinimal, {"domain.periodic=[x]"})));
   rough.emplace_back("settle={}");
-  is_refused(rough, "settle.gravity: its component along x is 0.1");
+  is_refused_there(rough, "settle.gravity: its component along x is 0.1");
   rough.back() = "settle={gravity: [0, 0, -9.81]}";
   CHECK(parse_error(kMinimal, rough) == "no error");
 }
