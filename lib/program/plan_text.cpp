@@ -89,8 +89,8 @@ std::string viscosity_line(const Plan& plan, const Scene& s) {
   if (plan.viscosity.sweeps == 0) return "";
   const double nu = kinematic_viscosity(s), own = kOwnViscosity * s.fluid.spacing;
   return fmt::format(
-      "  viscosity {:.3g} m^2/s{}, {} sweep{} of factor {:.3g}; the method itself has about {:.2g} "
-      "m^2/s per m/s of the flow, as much from {:.3g} m/s on\n",
+      "  viscosity {:.3g} m^2/s{}: {} sweep{} of factor {:.3g}; the method adds about {:.2g} m^2/s "
+      "per m/s of the flow, which is more above {:.3g} m/s\n",
       nu, s.viscosity->kinematic ? "" : " with this time.step", plan.viscosity.sweeps,
       plan.viscosity.sweeps == 1 ? "" : "s", plan.viscosity.factor, own, nu / own);
 }

@@ -20,7 +20,17 @@ struct Flow {
     plan = make_plan(scene, std::int64_t(particles.size()));
     solver = make_solver(scene, plan, std::move(particles));
   }
-  double gone() { return solver->readings(Series::measures, Interval::goes_on).at(0); }
+  /// Particles that the sink has taken.
+  double gone() {
+    double particles = -1;
+    const std::vector<double> all = solver->readings(Series::measures, Interval::goes_on);
+    for_each_number(plan.columns, Series::measures,
+                    [&](const ReadingColumn& c, int, std::size_t k) {
+                      if (std::string(c.kind) == "sink" && std::string(c.name) == "particles")
+                        particles = all.at(k);
+                    });
+    return particles;
+  }
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -48,7 +49,11 @@ struct CountedRun {
   RunParts run{start, solver, control, clock, folder, from};
 
   explicit CountedRun(const Scene& scene)
-      : start{{scene, {}, {}, {}, {}, {}, {}, {}}, make_plan(scene, CountingSolver::particles)} {}
+      : start{{scene, {}, {}, {}, {}, {}, {}, {}}, make_plan(scene, CountingSolver::particles)} {
+    std::size_t numbers = 0;
+    for_each_number(start.plan.columns, Series::measures, [&](auto&&...) { ++numbers; });
+    solver.measures = std::max<std::size_t>(1, numbers);
+  }
   /// "no error", or the exit code and the message.
   std::string error() {
     const Silence silence;

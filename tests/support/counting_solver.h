@@ -35,6 +35,7 @@ class CountingSolver : public Solver, public Inspection {
   std::int64_t fault = -1;                     ///< the update that step_checked() finds it in
   /// The particles after an update, where they appear and disappear. Their ids then have 64 bits.
   std::function<std::vector<std::int64_t>(std::int64_t update)> ids{};
+  std::size_t measures = 1;  ///< numbers of that series; all behind the first are 0
 
   std::int64_t steps() const { return now_.steps; }
   std::int64_t steps_without_time() const { return now_.without_time; }
@@ -107,7 +108,9 @@ class CountingSolver : public Solver, public Inspection {
     return m;
   }
   std::vector<double> readings(Series series, Interval interval) override {
-    return {read(series == Series::gauges ? now_.gauge : now_.load, interval)};
+    std::vector<double> all(series == Series::gauges ? 1 : measures);
+    all[0] = read(series == Series::gauges ? now_.gauge : now_.load, interval);
+    return all;
   }
   SolverInfo info() const override { return {}; }
 

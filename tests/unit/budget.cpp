@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 const std::map<std::string, int> kBudget = {
     {"app", 2270},      {"kernels", 6880},   {"lib/base", 1850},    {"lib/campaign", 3850},
     {"lib/exec", 6900}, {"lib/io", 4000},    {"lib/program", 8370}, {"lib/render", 3930},
-    {"lib/run", 6170},  {"lib/scene", 8350}, {"lib/solver", 3050},  {"lib/verify", 2200},
+    {"lib/run", 6170},  {"lib/scene", 8450}, {"lib/solver", 3050},  {"lib/verify", 2200},
 };
 constexpr int kLongestFile = 300;
 

@@ -50,7 +50,7 @@ Scene unlike_default() {
   s.bodies = {block, sphere, random, file, drum, hull};
   s.domain.loads = true;
   s.domain.friction = 1.0 / 3;
-  s.domain.friction_on = {"z_max", "x_min"};
+  s.domain.friction_on = {"z_min", "x_max"};
   Obstacle plane;
   plane.name = "odd name #1: [a], \"b\"";
   plane.shape = obstacle_keys::Plane{{1.0 / 3, 0, -1e-7}, {-1.0 / 7, 0, 1e5}};
@@ -129,7 +129,7 @@ Scene unlike_default() {
   s.solver.fused = false;
   s.solver.reproducible = true;
   s.tensile = Tensile{0.01, 0.2, 6};
-  s.viscosity = Viscosity{0.125, 1e-6 / 7};
+  s.viscosity = Viscosity{0, 1e-6 / 7};
   s.vorticity = Vorticity{2.5};
   s.settle = Settle{1.0 / 7, Double3{1.0 / 3, 0, -1e5}};
   s.measure_every = 17;

@@ -105,7 +105,9 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/emitters", {}},
     {"tests/regression/frozen/emitters",
      {"time.order=1", "obstacles=[]", "solver.substeps=3", "viscosity.xsph=0.1"}},
-    {"tests/regression/frozen/emitters", {"bodies.0.velocity=[-3, 0, 0]", "time.step=0.004"}},
+    {"tests/regression/frozen/emitters",
+     {"bodies.0.velocity=[8, 0, 0]", "time.step=0.004", "emitters.1.center=[0.35, 0.3, 0.12]",
+      "emitters.1.normal=[-1, 0, 0]", "emitters.1.start=0"}},
     {"tests/regression/frozen/emitters", {"emitters=[]", "gauges=[]"}},
 };
 
