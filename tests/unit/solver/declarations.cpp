@@ -106,8 +106,9 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/emitters",
      {"time.order=1", "obstacles=[]", "solver.substeps=3", "viscosity.xsph=0.1"}},
     {"tests/regression/frozen/emitters",
-     {"bodies.0.velocity=[8, 0, 0]", "time.step=0.004", "emitters.1.center=[0.35, 0.3, 0.12]",
-      "emitters.1.normal=[-1, 0, 0]", "emitters.1.start=0"}},
+     {"bodies.0.velocity=[0, 0, 8]", "time.step=0.004",
+      R"(emitters=[{"name":"a","shape":"disc","center":[0.3,0.3,0.4],"normal":[0,0,-1],)"
+      R"("radius":0.08,"speed":1}])"}},
     {"tests/regression/frozen/emitters", {"emitters=[]", "gauges=[]"}},
 };
 
