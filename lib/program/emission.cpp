@@ -14,6 +14,16 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
+/// How many layers of an emitter have begun when these have made `way` (m). begun(layer) decides,
+/// so that all agree; the way tells where to begin.
+template <class Begun>
+std::int64_t layers_begun(const EmissionPlan& plan, double way, const Begun& begun) {
+  std::int64_t n = plan.layers + std::int64_t(std::floor(way / plan.spacing + 0.5));
+  while (n > plan.layers && !begun(n - 1)) --n;
+  while (begun(n)) ++n;
+  return n;
+}
+
 }  // namespace
 
 SpeedCurve::SpeedCurve(const Scene& s, const Emitter& e) {
@@ -68,12 +78,8 @@ double EmissionPlan::birth(std::size_t e, std::int64_t layer) const {
 }
 
 std::int64_t EmissionPlan::born(std::size_t e, double t) const {
-  const double way = nozzles[e].curve.way(t);
-  std::int64_t n = layers + std::int64_t(std::floor(way / spacing + 0.5));
-  // The times of birth decide, so that all agree about them.
-  while (n > layers && birth(e, n - 1) > t + slack) --n;
-  while (birth(e, n) <= t + slack) ++n;
-  return n;
+  return layers_begun(*this, nozzles[e].curve.way(t),
+                      [&](std::int64_t k) { return birth(e, k) <= t + slack; });
 }
 
 std::int64_t EmissionPlan::particles(double t) const {
@@ -98,14 +104,9 @@ std::int64_t EmissionPlan::id(std::size_t e, std::int64_t layer) const {
       const double t = birth(o, k);
       return t < time || (t == time && o < e);
     };
-    std::int64_t n = layers;
-    if (std::isinf(time)) {
-      n = o < e ? layers : 0;
-    } else {
-      n += std::int64_t(std::floor(nozzles[o].curve.way(time) / spacing + 0.5));
-      while (n > layers && !earlier(n - 1)) --n;
-      while (earlier(n)) ++n;
-    }
+    const std::int64_t of_start = o < e ? layers : 0;
+    const std::int64_t n =
+        std::isinf(time) ? of_start : layers_begun(*this, nozzles[o].curve.way(time), earlier);
     before += n * nozzles[o].columns;
   }
   return before;

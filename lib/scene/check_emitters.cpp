@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/scene/body_box.h"
 #include "lib/scene/nozzle.h"
 #include "lib/scene/periodic.h"
 #include "lib/scene/scene_rules.h"
@@ -178,12 +179,11 @@ class EmitterChecker : public SceneRules {
 
   void check_sink(const Sink& k, const std::vector<Pipe>& pipes) {
     if (!good(k.min, k.max) || !above(k.min, k.max)) return;
+    BodyBox box{k.min, k.max};
+    if (flat()) box.low[1] = kNoBox.high[1], box.high[1] = kNoBox.low[1];  // without an end
     for (const Pipe& p : pipes)
-      for (Double3 x : p.places) {
-        bool in = true;
-        for (std::size_t a = 0; a < 3; ++a)
-          if (!(flat() && a == 1)) in = in && x[a] >= k.min[a] && x[a] <= k.max[a];
-        if (!in) continue;
+      for (const Double3& x : p.places) {
+        if (!box.holds(x, 0)) continue;
         add(k.min, "the box holds a place in the casing of emitter {}, {}; move one of them",
             p.emitter.name, text(x));
         return;

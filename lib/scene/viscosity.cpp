@@ -13,7 +13,7 @@ struct Moments {
   double first = 0;   ///< F(d/2), that of the half space
 };
 
-/// inv_sum: vol; 0: that of the rest lattice.
+/// vol: weight of a particle; 0: that of the rest lattice.
 template <Smoothing S>
 Moments moments_of(double ratio, double vol) {
   const int reach = int(std::ceil(ratio)), reach_y = dimensions_of(S) == 2 ? 0 : reach;
