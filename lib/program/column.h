@@ -16,7 +16,7 @@ struct Plan;
 inline constexpr int kDiagnosticColumns = 32;
 
 /// When columns are read: with the measures (the log), or every output.gauges_every. Poses are
-/// known without a solver, and are in the log too.
+/// in the log too; those of prescribed motions are known without a solver.
 enum class Series { measures, gauges, poses };
 
 /// How far a number may be off if the terms of its sum differ only in their last bits: sums are of
@@ -57,8 +57,10 @@ void for_each_number(const std::vector<ReadingColumn>& columns, Series series, F
 }
 
 /// Present position of the middle of each moving obstacle and the rows of its rotation from the
-/// pose in the scene file, `time` s after the start.
-std::vector<double> pose_readings(const Scene& scene, double time);
+/// pose in the scene file, `time` s after the start; of a free body also its velocities. bodies: of
+/// all free bodies.
+std::vector<double> pose_readings(const Scene& scene, double time,
+                                  const std::vector<BodyMotion>& bodies);
 
 /// "force_x", "total", "x", "turn_xy".
 std::string number_name(const ReadingColumn& column, int component);

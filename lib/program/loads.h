@@ -14,8 +14,8 @@ inline bool has_pressure_gauges(const Scene& scene) { return gauges_of<PatchTall
 
 /// Whether any loads are summed. Pressure gauges need them: they use a share of a surface's load.
 inline bool has_loads(const Scene& scene) {
-  // The work of a moving obstacle is computed from its load.
-  const auto wanted = [](const Obstacle& o) { return o.loads || o.motion; };
+  // The work of a moving obstacle is computed from its load, and the load moves a free body.
+  const auto wanted = [](const Obstacle& o) { return o.loads || o.moves(); };
   return scene.domain.loads || has_pressure_gauges(scene) ||
          std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
 }
@@ -48,11 +48,11 @@ inline std::int64_t load_walls(const Scene& scene) {
   return has_loads(scene) ? load_row_of_patch(scene, gauges_of<PatchTally>(scene)) : 0;
 }
 
-/// The bits of LoadBook::summed. Includes moving obstacles, whose work is computed from their load.
+/// The bits of LoadBook::summed. Includes moving obstacles.
 inline std::uint64_t summed_walls(const Scene& scene) {
   std::uint64_t bits = scene.domain.loads ? 63 : 0;
   for (int k = 0; k < int(scene.obstacles.size()) && load_row_of_solid(k) < 64; ++k)
-    if (const Obstacle& o = scene.obstacles[std::size_t(k)]; o.loads || o.motion)
+    if (const Obstacle& o = scene.obstacles[std::size_t(k)]; o.loads || o.moves())
       bits |= std::uint64_t(1) << load_row_of_solid(k);
   return bits;
 }

@@ -51,7 +51,7 @@ void must_be_read(const MotionTable& table, const std::string& path) {
 
 Double3 Pose::of(const Double3& x) const { return pivot + times(turn, x - pivot) + shift; }
 
-std::int64_t moving_obstacles(const Scene& s) {
+std::int64_t prescribed_obstacles(const Scene& s) {
   return std::ranges::count_if(s.obstacles, [](const Obstacle& o) { return o.motion.has_value(); });
 }
 
@@ -63,6 +63,11 @@ double size_of(const Scene& s, const Obstacle& o) {
 
 Pose pose_of(const Scene& s, const Obstacle& o, double time) {
   Pose p;
+  if (o.free && o.free->now) {
+    p.pivot = o.middle();
+    p.turn = o.free->now->turn;
+    p.shift = o.free->now->middle - p.pivot;
+  }
   if (!o.motion) return p;
   const Motion& m = *o.motion;
   const double t = s.time.motion_begin + (m.waits ? 0 : time);
@@ -144,10 +149,20 @@ FrameStep<double> frame_step(const Scene& s, const Axes& axes, double time, doub
   return out;
 }
 
+namespace {
+/// m/s: upper bound of the speed of the points of a free body.
+double speed_of(const Scene& s, const Obstacle& o) {
+  const BodyMotion now =
+      o.free->now.value_or(BodyMotion{{}, kUnit3, o.free->velocity, kRadians * o.free->angular});
+  return length(now.velocity) + length(now.spin) * size_of(s, o);
+}
+}  // namespace
+
 double fastest_obstacle(const Scene& s, double from, double to) {
   double fastest = 0;
   const double dt = 1e-3 * s.time.step;
   for (const Obstacle& o : s.obstacles) {
+    if (o.free) fastest = std::max(fastest, speed_of(s, o));
     if (!o.motion) continue;
     for (const double t : telling_times(s, *o.motion, from, to)) {
       const Pose a = pose_of(s, o, t), b = pose_of(s, o, t + dt);

@@ -8,6 +8,7 @@
 #include "kernels/boundary/moving.h"
 #include "kernels/boundary/obstacle.h"
 #include "lib/program/axes.h"
+#include "lib/program/free_bodies.h"
 #include "lib/scene/periodic.h"
 #include "lib/scene/scene.h"
 
@@ -20,9 +21,17 @@ struct Pose {
   Double3 of(const Double3& x) const;
 };
 
-/// How many obstacles of the scene move, and whether one does.
-std::int64_t moving_obstacles(const Scene& scene);
-inline bool has_moving_obstacles(const Scene& scene) { return moving_obstacles(scene) > 0; }
+/// How many obstacles have a prescribed motion.
+std::int64_t prescribed_obstacles(const Scene& scene);
+inline bool has_prescribed_obstacles(const Scene& scene) { return prescribed_obstacles(scene) > 0; }
+/// Whether an obstacle or the tank has a prescribed motion.
+inline bool has_prescribed_motion(const Scene& scene) {
+  return scene.tank_motion || has_prescribed_obstacles(scene);
+}
+/// Whether an obstacle moves, prescribed or free.
+inline bool has_moving_obstacles(const Scene& scene) {
+  return has_prescribed_obstacles(scene) || has_free_bodies(scene);
+}
 /// Whether an obstacle or the tank moves.
 inline bool has_motion(const Scene& scene) {
   return scene.tank_motion || has_moving_obstacles(scene);
@@ -31,7 +40,8 @@ inline bool has_motion(const Scene& scene) {
 /// Whether something does work on the fluid that its energy does not contain. Emission is apart.
 inline bool has_work(const Scene& scene) { return has_motion(scene) || has_drive(scene); }
 
-/// At `time` (s since the start). Throws Error(internal) if the file of the motion was not read.
+/// At `time` (s since the start); of a free body where it is now. Throws Error(internal) if the
+/// file of the motion was not read.
 Pose pose_of(const Scene& scene, const Obstacle& obstacle, double time);
 /// m: largest distance of a point of the obstacle from its middle, at most the domain's diagonal.
 double size_of(const Scene& scene, const Obstacle& obstacle);
@@ -49,7 +59,8 @@ TankPose tank_pose(const Scene& scene, double time);
 FrameStep<double> frame_step(const Scene& scene, const Axes& axes, double time, double dt);
 
 /// m/s: upper bound of the speed of the points of moving obstacles within the domain, between two
-/// times (s since the start). 0 if no obstacle moves.
+/// times (s since the start). 0 if no obstacle moves. Of free bodies it is that of now: what moves
+/// them is not known before.
 double fastest_obstacle(const Scene& scene, double from, double to);
 /// m/s^2: largest acceleration of a particle at rest, including gravity, between two times.
 double greatest_pull(const Scene& scene, double from, double to);

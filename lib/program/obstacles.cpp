@@ -60,7 +60,7 @@ shape::Mesh<double> map_of(const Obstacle& o, const Scene& s, const Matrix3& row
   MapOptions options;
   options.range = wall_range(s);
   options.reach = options.range + kNearRoom;
-  options.everywhere = o.motion.has_value() || !s.domain.open.empty();
+  options.everywhere = o.moves() || !s.domain.open.empty();
   if (!options.everywhere) options.wanted = wanted_of(s, rows, center);
   options.progress = progress;
   options.most =
@@ -81,7 +81,7 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s, double time,
                        const MapProgress& progress = {}) {
   Matrix3 rows = o.axes();
   Double3 center = o.middle();
-  if (o.motion) {
+  if (o.moves()) {
     const Pose pose = pose_of(s, o, time);
     center = pose.of(center);
     for (Double3& axis : rows)
@@ -97,7 +97,7 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s, double time,
           if (keys.surface) return map_of(o, s, rows, center, progress);
         auto body = keys.make(h);
         if constexpr (requires { body.through; })
-          body.through = behind_walls(s, rows, center, keys.make(1).ends());
+          if (!o.free) body.through = behind_walls(s, rows, center, keys.make(1).ends());
         return body;
       },
       o.shape);

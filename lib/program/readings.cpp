@@ -71,16 +71,22 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
   }
   all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
   for (const Obstacle& o : s.obstacles) {
-    if (!o.motion) continue;
+    if (!o.moves()) continue;
     all.push_back({"pose", o.name, "", "m", "", now, 3, poses});
     all.push_back({"pose", o.name, "turn", "1", "", now, 9, poses});
+    if (!o.free) continue;
+    all.push_back({"pose", o.name, "velocity", "m/s", "", now, 3, poses});
+    all.push_back({"pose", o.name, "spin", "rad/s", "", now, 3, poses});
   }
   return all;
 }
 
-std::vector<double> pose_readings(const Scene& s, double time) {
+std::vector<double> pose_readings(const Scene& s, double time,
+                                  const std::vector<BodyMotion>& bodies) {
   std::vector<double> out;
+  auto body = bodies.begin();
   for (const Obstacle& o : s.obstacles) {
+    if (o.free) BodyMotion::each(*body++, [&](double x) { out.push_back(x); });
     if (!o.motion) continue;
     const Pose pose = pose_of(s, o, time);
     const Double3 middle = pose.of(o.middle());
@@ -112,7 +118,7 @@ std::vector<double> load_readings(const std::vector<Load>& loads, const Scene& s
         const double extent = (s.domain.max[a] - s.domain.min[a]) / h;
         middle[k] = of[k] != surface / 2 ? extent / 2 : surface % 2 ? extent : 0;
       }
-    else if (!o->motion) {
+    else if (!o->moves()) {
       const Vec3<double>& c = plan.solids[std::size_t(o - s.obstacles.data())].center;
       middle[0] = c.x, middle[1] = c.y, middle[2] = c.z;
     }

@@ -33,6 +33,7 @@ Scene settling_scene(const Scene& scene) {
   for (Obstacle& o : s.obstacles) {
     o.loads = false;
     if (o.motion) o.motion->waits = true;
+    o.free.reset();  // it is held
   }
   s.domain.loads = false;
   s.gauges.clear();

@@ -34,7 +34,8 @@ void LogRows::take(Diagnostics& m, double dt) {
   const auto& writer = run_.writer;
   run_.clock.begin();
   if (writer) {
-    writer->log({m, run_.scene.solver.iterations, dt, since, pose_readings(run_.scene, m.time)});
+    writer->log(
+        {m, run_.scene.solver.iterations, dt, since, pose_readings(run_.scene, m.time, m.bodies)});
     run_.clock.mark("write");
   }
   if (!run_.json) return;

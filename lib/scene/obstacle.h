@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kernels/shapes/shapes.h"
+#include "lib/scene/free_body.h"
 #include "lib/scene/kinds.h"
 #include "lib/scene/motion.h"
 
@@ -26,9 +27,11 @@ struct Obstacle {
   obstacle_keys::Any shape = obstacle_keys::Box{};
   bool loads = false;            ///< the fluid's force on it is recorded
   double friction = 0;           ///< 0 (free slip) to 1 (no slip)
-  std::optional<Motion> motion;  ///< absent: it is fixed
+  std::optional<Motion> motion;  ///< prescribed
+  std::optional<FreeBody> free;  ///< the fluid moves it; without both, it is fixed
   bool operator==(const Obstacle&) const = default;
 
+  bool moves() const { return motion || free; }
   /// The keys of its shape, which must be `Shape`.
   template <class Shape>
   Shape& as() {

@@ -59,6 +59,7 @@ struct Diagnostics {
   double work = 0;              ///< J, of obstacles, tank and inflow since the start; WorkTrack
   /// Of Series::measures (lib/program/column.h), since the previous row. Monitor fills them in.
   std::vector<double> readings{};
+  std::vector<BodyMotion> bodies{};  ///< of the free bodies, in the order of obstacles
 };
 
 /// The state of an EnergyTrack and a WorkTrack, as a checkpoint stores it. J; rise: 1.

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "lib/scene/free_body.h"
+
 namespace pbf::solver_module {
 
 enum class ScalarType { f32, f64, i32, i64 };
@@ -53,6 +55,7 @@ struct Snapshot {
   double time = 0;          ///< s
   std::size_t count = 0;    ///< particles
   std::vector<FieldArray> fields;
+  std::vector<BodyMotion> bodies{};  ///< of the free bodies, in the order of obstacles
 
   const FieldArray* find(const std::string& name) const {
     for (const auto& f : fields)

@@ -13,7 +13,7 @@
 namespace pbf::program_module {
 inline std::int64_t per_table_row(const Sizes& n) { return motion_table_rows(n.plan); }
 inline std::int64_t per_pose_step(const Sizes& n) {
-  return motion_table_rows(n.plan) * moving_obstacles(n.scene);
+  return motion_table_rows(n.plan) * prescribed_obstacles(n.scene);
 }
 }  // namespace pbf::program_module
 
