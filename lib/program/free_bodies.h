@@ -35,4 +35,9 @@ inline Scene with_bodies(Scene scene, const std::vector<BodyMotion>& bodies) {
   return scene;
 }
 
+/// The scene of a run that begins with its free bodies where `bodies` says, at these velocities;
+/// its obstacles then have other keys, and `turn` counts from there. The same places but for
+/// rounding.
+Scene begun_with_bodies(Scene scene, const std::vector<BodyMotion>& bodies);
+
 }  // namespace pbf::program_module

@@ -17,13 +17,10 @@ struct BodyRow {
   std::size_t times = 0;
   double worst_at = 0;  ///< s
 
-  /// period: of the axes, in the unit of the column; 0: not periodic.
-  void take(std::span<const double> x, std::span<const double> y, const Double3& period,
-            double time) {
+  void take(std::span<const double> x, std::span<const double> y, double time) {
     double error = 0;
     for (std::size_t k = 0; k < x.size(); ++k) {
-      const double off = apart(x[k], y[k]);
-      error = std::max(error, std::fabs(std::isfinite(off) ? shortest(off, period[k % 3]) : off));
+      error = std::max(error, apart(x[k], y[k]));
       largest = std::max({largest, std::fabs(x[k]), std::fabs(y[k])});
     }
     squares += error * error;
@@ -39,8 +36,7 @@ std::string name_of(const ReadingColumn& c) {
 /// The columns of one body, by their frames and by the log.
 class ComparedBody {
  public:
-  explicit ComparedBody(const std::string& name, const Scene& scene)
-      : columns_(body_columns(name)), period_(periods(scene)) {
+  explicit ComparedBody(const std::string& name) : columns_(body_columns(name)) {
     for (const ReadingColumn& c : columns_)
       rows_.push_back({{name_of(c), c.unit, 0, 0, 0, 0, 0, Verdict::same}});
   }
@@ -77,14 +73,12 @@ class ComparedBody {
     std::size_t first = 0;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const auto n = std::size_t(columns_[c].components);
-      rows_[c].take(std::span(x).subspan(first, n), std::span(y).subspan(first, n),
-                    c == 0 ? period_ : Double3{}, time);
+      rows_[c].take(std::span(x).subspan(first, n), std::span(y).subspan(first, n), time);
       first += n;
     }
   }
 
   std::vector<ReadingColumn> columns_;
-  Double3 period_;
   std::vector<BodyRow> rows_;
 };
 
@@ -101,7 +95,7 @@ std::optional<ComparePart> compare_bodies(const ComparedRun& a, const ComparedRu
                            ? "0: both are the CPU in one precision and build, which promises it"
                            : "none: files hold no ensemble (pbf compare SCENE --between makes one)";
   std::vector<ComparedBody> bodies;
-  for (const std::string& name : in_a) bodies.emplace_back(name, a.scene);
+  for (const std::string& name : in_a) bodies.emplace_back(name);
   // Where B has a body of A; what only one has the part `scene` names.
   std::vector<std::size_t> at;
   for (const std::string& name : in_a)

@@ -24,7 +24,8 @@ __version__ = "0.1.0"
 # must come as far as a message when they are not installed.
 _PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "run_file",
            "Run": "run_file", "open": "run_file", "plan": "simulate", "run": "simulate",
-           "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table", "read_csv": "table"}
+           "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table",
+           "read_csv": "table"}
 
 
 def __getattr__(name: str) -> Any:
