@@ -127,14 +127,14 @@ double largest(Scene s, const AnyMotion& m, F&& f) {
   return f(s, 0.0, end);
 }
 
-/// Greatest speed of an obstacle at any time, m/s.
+/// Greatest speed of an obstacle at any time, m/s; of a free body that at the start.
 double fastest_ever(const Scene& s) {
   double most = 0;
   Scene one = s;  // obstacles have different periods
   for (const Obstacle& o : s.obstacles) {
-    if (!o.motion) continue;
     one.obstacles = {o};
-    most = std::max(most, largest(one, *o.motion, fastest_obstacle));
+    most = std::max(
+        most, o.motion ? largest(one, *o.motion, fastest_obstacle) : fastest_obstacle(one, 0, 0));
   }
   return most;
 }

@@ -5,17 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "kernels/boundary/obstacle.h"
-#include "lib/scene/body_box.h"
+#include "lib/scene/overlap.h"
 
 namespace pbf::run_module {
-
-/// The extents of a solid along the axes of the scene, in h from its origin; infinite for a plane,
-/// and along y of a scene in two dimensions.
-BodyBox extents_of(const Scene& scene, const Solid<double>& solid);
-
-/// The domain in the same form.
-BodyBox extents_of(const Scene& scene);
 
 /// Poses of an obstacle at times of the run, which include all extremes of its motion. Between two
 /// times it moves by at most a spacing, unless that takes more than kLongestTrack times.
@@ -30,11 +22,6 @@ std::vector<Track> tracks_of(const Scene& scene);
 
 /// The obstacle at a time, s since the start.
 Solid<double> solid_at(const Scene& scene, const Obstacle& obstacle, double time);
-
-/// Thickness of the overlap of two solids in the domain, h: the diameter of its largest inscribed
-/// ball; 0 if below `least`. The solids are convex, so descent finds the center of this ball.
-double shared_thickness(const Scene& scene, const Solid<double>& a, const Solid<double>& b,
-                        double least);
 
 /// "obstacles[0] (gate)"
 std::string named(const Scene& scene, std::size_t obstacle);

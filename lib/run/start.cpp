@@ -10,6 +10,7 @@
 #include "lib/exec/ranks/world.h"
 #include "lib/program/obstacles.h"
 #include "lib/run/emit.h"
+#include "lib/run/free_starts.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/settle.h"
 #include "lib/run/start_neighbors.h"
@@ -49,6 +50,7 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
       options.progress(fmt::format("map of obstacles[{}] ({}): {:.0f} %", k,
                                    scene.obstacles[k].surface_file()->path, 100 * done));
   });
+  require_free_starts(scene);
   const auto own = std::make_shared<const Scene>(scene);  // points outlive `start`
   const auto all = std::make_shared<StartPoints>(*own, start.loaded.folder);
   StartPoints& points = *all;

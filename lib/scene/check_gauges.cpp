@@ -91,7 +91,7 @@ class GaugeChecker : public SceneRules {
         return add(g.on, "{} is open, without a wall (domain.open); give another", g.on);
     } else if (!good_obstacle(*o)) {
       return;
-    } else if (o->motion) {
+    } else if (o->moves()) {
       return add(g.on,
                  "{} moves, and a pressure gauge stays where it is; give it loads instead "
                  "(obstacles[].loads), or put the gauge on what stands",

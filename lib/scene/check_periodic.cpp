@@ -80,7 +80,7 @@ class PeriodicChecker : public SceneRules {
   /// An obstacle has no images. Its fluid is up to kClear away from it
   /// (lib/program/posed_solids.h).
   void check(const Obstacle& o, std::size_t a) {
-    if (!good_obstacle(o)) return;
+    if (!good_obstacle(o) || o.free) return;  // check_free() refuses these
     // A plane along the axis is its own image, wherever it moves without turning.
     if (const auto* plane = std::get_if<obstacle_keys::Plane>(&o.shape);
         plane && plane->normal[a] == 0 && (!o.motion || keeps_direction(*o.motion)))

@@ -50,7 +50,7 @@ void choose_step(PlacedScene& placed, Problems& problems) {
     step = auto_step(placed.scene);
     if (step > 0) return;
     const Scene& s = placed.scene;
-    if (s.tank_motion || std::ranges::any_of(s.obstacles, [](auto& o) { return bool(o.motion); })) {
+    if (s.tank_motion || std::ranges::any_of(s.obstacles, [](auto& o) { return o.moves(); })) {
       step = s.output ? s.output->every : s.time.end;  // until the tables are read
       return;
     }

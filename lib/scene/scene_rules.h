@@ -121,6 +121,7 @@ class SceneRules {
 /// Parts of check_scene().
 void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
+void check_free(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);
 void check_emitters(const PlacedScene& placed, Problems& problems);
 void check_periodic(const PlacedScene& placed, Problems& problems);

@@ -19,6 +19,7 @@ const char* why_one_rank(const Scene& s) {
   if (!s.emitters.empty()) return "its emitters change the number of particles";
   if (!s.sinks.empty()) return "its sinks change the number of particles";
   if (changes_rows(s)) return "the number of its particles changes";
+  if (has_free_bodies(s)) return "the fluid moves some of its obstacles (obstacles[].free)";
   if (!s.domain.periodic.empty()) return "it has periodic axes (domain.periodic)";
   for (const Gauge& g : s.gauges)
     if (std::holds_alternative<gauge_keys::Flow>(g.kind))

@@ -44,6 +44,22 @@ struct Box {
     const Double3 half = 0.5 * (max - min);
     return {{half[0] / h, half[1] / h, half[2] / h}};
   }
+  /// In two dimensions a rectangle.
+  BodyMoments moments(bool flat) const {
+    const Double3 e = max - min;
+    return symmetric_moments(e[0] * (flat ? 1 : e[1]) * e[2],
+                             {e[0] * e[0] / 12, flat ? 0 : e[1] * e[1] / 12, e[2] * e[2] / 12});
+  }
+  /// Corners, and middles of edges and faces.
+  std::vector<ContactPoint> contacts(bool flat) const {
+    const Double3 half = 0.5 * (max - min);
+    std::vector<ContactPoint> all;
+    for (int code = 0; code < 27; ++code) {
+      const int x = code % 3 - 1, y = code / 3 % 3 - 1, z = code / 9 - 1;
+      if (code != 13 && (!flat || y == 0)) all.push_back({{x * half[0], y * half[1], z * half[2]}});
+    }
+    return all;
+  }
 };
 
 }  // namespace obstacle_keys

@@ -20,6 +20,26 @@ struct Capsule : Tube {
                           : nullptr);
   }
   Body make(double h) const { return {radius / h, 0.5 * length() / h}; }
+  /// In two dimensions its axis lies in the section.
+  BodyMoments moments(bool flat) const {
+    const double r2 = radius * radius, l = length(), half = 0.5 * l;
+    // The ends together are a ball (a disc) whose halves are moved apart by half each.
+    const double tube = (flat ? 2 * radius : kCirclePi * r2) * l,
+                 ends = (flat ? kCirclePi : 4.0 / 3 * kCirclePi * radius) * r2,
+                 middle = (flat ? 4 / (3 * kCirclePi) : 3.0 / 8) * radius,
+                 own = r2 / (flat ? 4 : 5);
+    const double across = tube * r2 / (flat ? 3 : 4) + ends * own,
+                 along = tube * l * l / 12 + ends * (own + half * half + 2 * half * middle);
+    BodyMoments m;
+    m.volume = tube + ends;
+    m.second[0][0] = across, m.second[2][2] = along;
+    if (!flat) m.second[1][1] = across;
+    return m;
+  }
+  std::vector<ContactPoint> contacts(bool) const {
+    const double half = 0.5 * length();
+    return {{{0, 0, -half}, radius}, {{0, 0, half}, radius}, {{}, radius}};
+  }
 };
 
 }  // namespace obstacle_keys

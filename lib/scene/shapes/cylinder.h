@@ -20,6 +20,26 @@ struct Cylinder : Tube {
                           : nullptr);
   }
   Body make(double h) const { return {radius / h, 0.5 * length() / h}; }
+  /// In two dimensions a disc.
+  BodyMoments moments(bool flat) const {
+    const double r2 = radius * radius, l = length();
+    return symmetric_moments(kCirclePi * r2 * (flat ? 1 : l),
+                             {r2 / 4, r2 / 4, flat ? 0 : l * l / 12});
+  }
+  /// Points of both rims and of the circle between them, and the middles of the ends.
+  std::vector<ContactPoint> contacts(bool flat) const {
+    if (flat) return {{{}, radius}};
+    const double half = 0.5 * length();
+    std::vector<ContactPoint> all{{{0, 0, -half}}, {{0, 0, half}}};
+    for (int k = 0; k < 16; ++k) {
+      const double angle = kCirclePi * k / 8, x = radius * std::cos(angle),
+                   y = radius * std::sin(angle);
+      all.push_back({{x, y, -half}});
+      all.push_back({{x, y, half}});
+      if (k % 2 == 0) all.push_back({{x, y, 0}});
+    }
+    return all;
+  }
 };
 
 }  // namespace obstacle_keys

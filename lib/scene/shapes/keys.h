@@ -5,6 +5,10 @@
 //   check(rules)           checks rules between its keys, by SceneRules
 //   middle(), axes()       position of the body, m, and its axes as rows
 //   make(h)                the body, with lengths divided by h
+// A shape that may be free, that is, moved by the fluid, also has (lib/scene/rigid.h)
+//   moments(flat)          its volume, center and second moments
+//   contacts(flat)         where it may touch something
+// flat: in two dimensions, where check() has refused what they cannot describe.
 #pragma once
 
 #include <tuple>
@@ -12,11 +16,14 @@
 #include "kernels/shapes/shapes.h"
 #include "lib/base/text.h"
 #include "lib/scene/kinds.h"
+#include "lib/scene/rigid.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::scene_module {
 
 namespace obstacle_keys {
+
+inline constexpr double kCirclePi = 3.14159265358979323846;
 
 inline constexpr const char* kRadiusHelp =
     "Radius; of cylinders, capsules and discs at least the smoothing length.";

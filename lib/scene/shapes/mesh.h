@@ -87,6 +87,20 @@ struct Mesh : SurfaceFile {
   Matrix3 axes() const { return axes_turned(turn_axis, turn_angle); }
   double meters() const { return scale; }
   Body make(double h) const { return bare(scale, h); }
+  /// Zeros, or no places, until the surface is read.
+  BodyMoments moments(bool) const {
+    if (!surface) return {};
+    BodyMoments m = moments_of(surface->mesh(), surface->middle());
+    const double cube = scale * scale * scale;
+    m.volume *= cube;
+    m.center = scale * m.center;
+    for (Double3& row : m.second) row = (cube * scale * scale) * row;
+    return m;
+  }
+  std::vector<ContactPoint> contacts(bool) const {
+    if (!surface) return {};
+    return contacts_of(surface->mesh(), surface->middle(), scale, kMeshContacts);
+  }
 };
 
 }  // namespace obstacle_keys

@@ -268,6 +268,7 @@ TEST_CASE("table of keys: every default lies in its own range") {
     Body body;
     Obstacle obstacle;
     obstacle.motion.emplace();
+    obstacle.free.emplace();
     Emitter emitter;
     Node node;
     const Block* list = key.block->list_around();
@@ -314,12 +315,12 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
        (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
     ++closed;
   CHECK(objects == closed);
-  // One object for every shape of a body, of an emitter and of an obstacle, each kind of its
-  // motion, and every kind of a gauge; and what gravity may be.
+  // One object for every shape of a body, of an emitter and of an obstacle, that it is free, each
+  // kind of its motion, and every kind of a gauge; and what gravity may be.
   const auto kinds = [](const char* key) { return scene_table().find_key(key)->choices.size(); };
-  CHECK(objects == scene_table().blocks.size() - 6 + kinds("bodies[].shape") +
+  CHECK(objects == scene_table().blocks.size() - 7 + kinds("bodies[].shape") +
                        kinds("emitters[].shape") +
-                       kinds("obstacles[].shape") * (1 + kinds("obstacles[].motion.kind")) +
+                       kinds("obstacles[].shape") * (2 + kinds("obstacles[].motion.kind")) +
                        kinds("tank_motion.kind") + kinds("gauges[].kind") + 1);
 }
 

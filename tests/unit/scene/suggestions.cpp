@@ -82,16 +82,29 @@ TEST_CASE("suggestions: what other programs call a key") {
 }
 
 TEST_CASE("suggestions: what obstacles and bodies do not have is said, no key of other blocks") {
-  for (const char* key : {"density", "mass", "Rest_Density", "weight"})
-    CHECK(contains(suggested(std::string("obstacles[].") + key), "obstacles have no mass"));
+  for (const char* key : {"density", "Rest_Density", "rhopbody", "free.relative_weight"})
+    CHECK(suggested(std::string("obstacles[].") + key) == "obstacles[].free.density");
+  for (const char* key : {"mass", "massbody", "weight", "free.weight"})
+    CHECK(suggested(std::string("obstacles[].") + key) == "obstacles[].free.mass");
+  for (const char* key : {"isDynamic", "floating", "rigid_body"})
+    CHECK(suggested(std::string("obstacles[].") + key) == "obstacles[].free");
+  CHECK(contains(suggested("obstacles[].inertia"), "follow from its shape"));
+  CHECK(contains(suggested("obstacles[].free.inertia"), "follow from the shape"));
+  CHECK(contains(suggested("obstacles[].free.friction"), "without friction and without bounce"));
+  CHECK(suggested("obstacles[].free.omega") == "obstacles[].free.angular");
+  CHECK(suggested("obstacles[].free.linearvelini") == "obstacles[].free.velocity");
+  CHECK(suggested("obstacles[].free.translationDOF") == "obstacles[].free.lock");
+  CHECK(suggested("floatings") == "obstacles");
   for (const char* key : {"material", "restitution"})
     CHECK(contains(suggested(std::string("obstacles[].") + key), "obstacles are rigid"));
   CHECK(suggested("obstacles[].no_slip") == "obstacles[].friction");
   for (const char* key : {"fixed", "static", "moving"})
     CHECK(contains(suggested(std::string("obstacles[].") + key), "stand still unless"));
   for (const char* key : {"velocity", "speed", "v"})
-    CHECK(suggested(std::string("obstacles[].") + key) == "obstacles[].motion.velocity");
-  CHECK(suggested("obstacles[].angular_velocity") == "obstacles[].motion.angular");
+    CHECK(suggested(std::string("obstacles[].") + key) ==
+          "obstacles[].motion.velocity or obstacles[].free.velocity");
+  CHECK(suggested("obstacles[].angular_velocity") ==
+        "obstacles[].motion.angular or obstacles[].free.angular");
   CHECK(suggested("obstacles[].motion.frequency") == "obstacles[].motion.period");
   CHECK(suggested("tank_motion.frequency") == "tank_motion.period");
   CHECK(suggested("obstacles[].motion.speed") == "obstacles[].motion.velocity");
