@@ -34,7 +34,7 @@ struct Load {
   double moment[3] = {0, 0, 0};
   double peak = 0;  ///< h/s^2, largest mean force of one update
   double time = 0;  ///< s
-  double work = 0;  ///< h^2/s^2, done by a moving obstacle
+  double work = 0;  ///< h^2/s^2, done by a moving obstacle; lost by a free body
 
   /// Calls f for every number, in the order of files.
   template <class Self, class F>
@@ -73,9 +73,12 @@ namespace pbf::PBF_VARIANT {
 /// Where loads are booked.
 template <class Real>
 struct LoadBook {
-  LoadSums* sums = nullptr;      ///< kLoadParts for each wall; null: there are none
-  LoadSums* clamps = nullptr;    ///< the same for predictions; null: these are among `sums`
-  Real moment_scale = 1;         ///< 2^-e, 2^e above the longest edge of the box, h
+  LoadSums* sums = nullptr;    ///< kLoadParts for each wall; null: there are none
+  LoadSums* clamps = nullptr;  ///< the same for predictions; null: these are among `sums`
+  Real moment_scale = 1;       ///< 2^-e, 2^e above the longest edge of the box, h
+  /// Counts what is added to `sums` and `clamps`, with kLoadParts for each wall; null: nothing
+  /// does.
+  std::int64_t* pushes = nullptr;
   const Patch* patch = nullptr;  ///< pressure gauges
   int patches = 0;
   /// Bit k: wall k has sums of its own. Walls beyond the last bit always have them.
@@ -95,6 +98,7 @@ struct LoadBook {
 #endif
     if (wall > 63 || summed >> wall & 1) {
       LoadSums& to = rows[wall * kLoadParts + part];
+      if (pushes) add_whole(&pushes[wall * kLoadParts + part], 1);
       const Vec3<Real> moment = moment_scale * cross(x, way);
       add_units(&to.way[0], way.x), add_units(&to.moment[0], moment.x);
       add_units(&to.way[1], way.y), add_units(&to.moment[1], moment.y);
@@ -190,7 +194,8 @@ struct LoadPass {
     const int solid = wall - load_row_of_solid(0);
     if (velocity && solid >= 0 && solid < obstacles && velocity[solid].moves) {
       const SolidVelocity& v = velocity[solid];
-      for (int k = 0; k < 3; ++k) to.work -= impulse[k] * v.linear[k] + moment[k] * v.angular[k];
+      for (int k = 0; k < 3 && !v.free; ++k)
+        to.work -= impulse[k] * v.linear[k] + moment[k] * v.angular[k];
       for (int k = 0; k < 3; ++k) {
         const int b = (k + 1) % 3, c = (k + 2) % 3;
         moment[k] -= v.middle[b] * impulse[c] - v.middle[c] * impulse[b];

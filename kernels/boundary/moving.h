@@ -14,6 +14,7 @@ struct SolidVelocity {
   double linear[3] = {0, 0, 0};   ///< h/s
   double angular[3] = {0, 0, 0};  ///< 1/s
   double middle[3] = {0, 0, 0};   ///< h, its position halfway through the update
+  bool free = false;              ///< the fluid moves it
 };
 
 }  // namespace pbf

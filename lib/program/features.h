@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "lib/program/features/bodies.h"
 #include "lib/program/features/confinement.h"
 #include "lib/program/features/constraint.h"
 #include "lib/program/features/correction.h"
@@ -43,8 +44,8 @@ struct FeatureList {
 };
 
 using Features =
-    FeatureList<Motion, NearSolids, Constraint, Levels, Correction, Emission, Viscosities,
-                VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
+    FeatureList<Motion, NearSolids, FreeBodies, Constraint, Levels, Correction, Emission,
+                Viscosities, VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::PBF_VARIANT

@@ -179,6 +179,10 @@ RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Re
     }
   }
   run.all = bounds_of(all);
+  if (has_free_bodies(scene)) {  // they may be anywhere
+    const Real far(kEndless);
+    run.all = {{-far, -far, -far}, {far, far, far}};
+  }
   return run;
 }
 

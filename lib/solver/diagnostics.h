@@ -53,10 +53,11 @@ struct Diagnostics {
   double velocity_lag = 0;      ///< s, by how much momenta are earlier than `time`
   bool moved = false;           ///< obstacles, the tank or gravity along a periodic axis do work
   double power = 0;             ///< W, of the tank's motion, and of gravity along periodic axes
-  double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
-  double inflow = 0;            ///< J, by emitters less what sinks took, since the start
-  std::int64_t particles = 0;   ///< their present number
-  double work = 0;              ///< J, of obstacles, tank and inflow since the start; WorkTrack
+  double solid_work =
+      0;  ///< J, of moving obstacles in the current interval of loads; lost by free bodies
+  double inflow = 0;           ///< J, by emitters less what sinks took, since the start
+  std::int64_t particles = 0;  ///< their present number
+  double work = 0;             ///< J, of obstacles, tank and inflow since the start; WorkTrack
   /// Of Series::measures (lib/program/column.h), since the previous row. Monitor fills them in.
   std::vector<double> readings{};
   std::vector<BodyMotion> bodies{};  ///< of the free bodies, in the order of obstacles

@@ -75,6 +75,7 @@ class StepSolver final : public Solver, public Inspection {
     auto snapshot =
         std::make_shared<Snapshot>(empty_snapshot(fields, type, std::size_t(stepper_->rows()),
                                                   updates_, double(updates_) * scene_.time.step));
+    snapshot->bodies = stepper_->bodies();
     if (changes_rows(scene_))
       std::ranges::copy(stepper_->ids(), snapshot->fields.back().as<std::int32_t>().begin());
     type == ScalarType::f64 ? start_export<double>(*snapshot) : start_export<float>(*snapshot);
@@ -225,6 +226,7 @@ class StepSolver final : public Solver, public Inspection {
       m.power += unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - m.velocity_lag,
                                                    scene_.time.step),
                                         m.velocity_lag, scene_.time.step);
+    m.bodies = stepper_->bodies();
     if (has_moving_obstacles(scene_))
       for (const Load& l : stepper_->loads(Interval::goes_on)) m.solid_work += unit * l.work;
   }

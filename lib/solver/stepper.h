@@ -130,6 +130,8 @@ class Stepper {
   std::vector<DissipationSum> dissipation() { return read_dissipation(c_); }
   /// What emitters have brought and sinks taken, since the start.
   std::vector<EmissionSum> emission() { return read_emission(c_); }
+  /// How the free bodies move.
+  std::vector<BodyMotion> bodies() { return read_bodies(c_); }
   /// Readings of the gauges; means since the last call with Interval::ends.
   std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 

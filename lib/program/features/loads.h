@@ -26,6 +26,9 @@ inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 /// The same of predictions, in time steps of second order: no share of it is taken over.
 inline constexpr struct ClampRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } clamp_sums{{"clamp sums", per_wall, Life::update}};
+/// How often each wall was booked, in scenes with free bodies.
+inline constexpr struct PushCounts : Plain<std::int64_t, kLoadParts> {
+} push_counts{{"push counts", per_wall, Life::update}};
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
 } loads{{"loads", per_wall, Life::state}};
@@ -55,19 +58,22 @@ inline bool carries_no_loads(const Scene& s) { return has_loads(s) && !is_second
 
 /// The needs of a pass that books loads; of one that books those of predictions.
 using BookNeeds =
-    Needs<If<has_loads, Adds<field::load_sums>>, If<has_pressure_gauges, Looks<field::patches>>>;
+    Needs<If<has_loads, Adds<field::load_sums>>, If<has_free_bodies, Adds<field::push_counts>>,
+          If<has_pressure_gauges, Looks<field::patches>>>;
 using StartBookNeeds =
     Needs<If<carries_loads, Adds<field::clamp_sums>>, If<carries_no_loads, Adds<field::load_sums>>,
+          If<has_free_bodies, Adds<field::push_counts>>,
           If<has_pressure_gauges, Looks<field::patches>>>;
 
-/// sums: the rows of field::load_sums, or null; clamps: those of field::clamp_sums, or null; patch:
-/// those of field::patches.
+/// pushes: those of field::push_counts, or null; sums: the rows of field::load_sums, or null;
+/// clamps: those of field::clamp_sums, or null; patch: those of field::patches.
 template <class Real>
 LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums, LoadSums* clamps,
-                         const Patch* patch) {
+                         std::int64_t* pushes, const Patch* patch) {
   return {sums,
           clamps,
           Real(1 / moment_unit(box)),
+          pushes,
           patch,
           gauges_of<PatchTally>(scene),
           summed_walls(scene)};

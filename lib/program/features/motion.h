@@ -5,6 +5,7 @@
 #include "kernels/pass_predict.h"
 #include "kernels/row_state.h"
 #include "lib/program/as_types.h"
+#include "lib/program/features/body_rows.h"
 #include "lib/program/features/solids.h"
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
@@ -37,15 +38,16 @@ PoseStep<Real> row_of(const field::PoseSteps&);
 /// Puts moving obstacles and the tank at their places for the step. Only in scenes with motion.
 struct MoveSolids {
   static constexpr PassText text{"motion", "predict"};
-  using Needs = pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
-                           If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
-                           If<has_moving_obstacles, Looks<field::pose_steps>, Places<field::solids>,
-                              Places<field::solids_before>, Places<field::solid_velocity>>>;
+  using Needs =
+      pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
+                 If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
+                 If<has_prescribed_obstacles, Looks<field::pose_steps>, Places<field::solids>,
+                    Places<field::solids_before>, Places<field::solid_velocity>>>;
   template <class G>
   static void launch(const G& c) {
     c.items(1, MoveSolidsPass<typename G::Real>{
                    c[field::step_row], c[field::frame_steps], c[field::pose_steps],
-                   int(moving_obstacles(c.scene)), c[field::frame], c[field::solids],
+                   int(prescribed_obstacles(c.scene)), c[field::frame], c[field::solids],
                    c[field::solids_before], c[field::solid_velocity]});
   }
 };
@@ -203,7 +205,7 @@ struct MakeLists {
 struct Motion {
   using Passes = PassList<MoveSolids, Predict, Sort, PredictSort, MakeLists>;
   static void add(const Scene& s, auto& b) {
-    if (has_motion(s)) b.start(MoveSolids());
+    if (has_prescribed_motion(s)) b.start(MoveSolids());
     if (!s.obstacles.empty() && !has_moving_obstacles(s))
       b.left_out("motion of obstacles", "no obstacle has motion");
     if (!s.tank_motion) b.left_out("motion of the tank", "no key tank_motion");
@@ -212,13 +214,15 @@ struct Motion {
   template <class Real>
   struct Memory : NoMemory {
     static std::int64_t most_steps(const Scene& s, const Plan& plan) {
-      return has_motion(s) ? std::max(1, kMotionRows / plan.substeps)
-                           : NoMemory::most_steps(s, plan);
+      return has_prescribed_motion(s) ? std::max(1, kMotionRows / plan.substeps)
+                                      : NoMemory::most_steps(s, plan);
     }
     /// Puts the obstacles at their places at `time`, until a step moves them.
     void stand(auto& c, double time) {
       if (!has_obstacles(c.scene)) return;
-      std::vector<PosedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
+      const std::vector<BodyMotion> bodies = read_bodies(c);
+      std::vector<PosedSolid<Real>> all =
+          placed_at(with_bodies(c.scene, bodies), c.plan, c.p.boundary, time);
       const MapAddresses<Real>& maps = c.template memory<NearSolids>().maps;
       for (std::size_t k = 0; k < all.size(); ++k) maps.set(k, all[k].solid);
       c.put(field::solids, all);
@@ -230,7 +234,7 @@ struct Motion {
     }
     /// The table of the steps to come.
     void before_steps(auto& c, const StepRange& steps) {
-      if (!has_motion(c.scene) || !(c.p.dt > 0)) return;
+      if (!has_prescribed_motion(c.scene) || !(c.p.dt > 0)) return;
       MotionRows<Real> rows =
           motion_rows<Real>(c.scene, c.plan, c.p.boundary, steps, c.plan.substeps);
       const MapAddresses<Real>& maps = c.template memory<NearSolids>().maps;
@@ -240,7 +244,7 @@ struct Motion {
       }
       c.put(field::step_row, std::vector<int>{0});
       if (has_tank_motion(c.scene)) c.put(field::frame_steps, rows.frames);
-      if (has_moving_obstacles(c.scene)) c.put(field::pose_steps, rows.steps);
+      if (has_prescribed_obstacles(c.scene)) c.put(field::pose_steps, rows.steps);
     }
   };
 };

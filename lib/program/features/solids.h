@@ -16,7 +16,10 @@
 namespace pbf::program_module {
 /// More than a box that stands still.
 inline bool has_more_than_walls(const Scene& s) { return has_solids(s) || has_motion(s); }
-inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.is_closed(); }
+/// Where solids are near is known beforehand, cell by cell.
+inline bool has_solids_in_grid(const Scene& s) {
+  return has_solids(s) && s.domain.is_closed() && !has_free_bodies(s);
+}
 /// Enough for all half cells of the grid.
 inline std::int64_t per_half_cell(const Sizes& n) {
   return n.bins / bins_per_cell(n.scene.dimensions);
@@ -163,7 +166,7 @@ struct NearSolids {
       scene.solids = int(s.obstacles.size()) + scene.casings;
       scene.flat = c.p.dimensions == 2;
       scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::clamp_sums),
-                              c.data(field::patches));
+                              c.data(field::push_counts), c.data(field::patches));
       c.put(field::solid_scene, {scene});
       if (has_maps(s)) {
         c.put(field::solid_maps, map_array<Real>(c.plan.solids));
@@ -181,6 +184,7 @@ struct NearSolids {
       solids.near.far_way_squared = Real(move * move);
       c.exec.to_device(std::vector<Real>(C::padding, solids.near.far_way_squared).data(),
                        C::padding, c.data(field::near_way_left) + c.capacity());
+      if (!has_solids_in_grid(s)) return;
       const std::vector<int> cells =
           half_cells_near_solids(s, run.standing, run.moving, c.p, solids.clear, solids.loaded);
       half_cells = int(cells.size());

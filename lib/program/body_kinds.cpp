@@ -1,0 +1,135 @@
+#include "lib/program/body_kinds.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "lib/program/body_mass.h"
+#include "lib/program/free_bodies.h"
+#include "lib/program/obstacles.h"
+#include "lib/scene/vector3.h"
+
+namespace pbf::program_module {
+namespace {
+
+/// Inertia of a thin ball over that of a full one; in two dimensions of a ring over a disc.
+constexpr double kShell = 5.0 / 3, kFlatShell = 2;
+
+/// Vectors of the scene and of the internal frame, whose axes are those of the scene in another
+/// order. hand: -1 if a cross product changes its sign.
+struct Frames {
+  const Axes& axes;
+  double hand = axes.handedness();
+
+  Vec3<double> inside(const Double3& a) const {
+    return {a[std::size_t(axes.of[0])], a[std::size_t(axes.of[1])], a[std::size_t(axes.of[2])]};
+  }
+  Double3 outside(const Vec3<double>& a) const {
+    Double3 out{};
+    out[std::size_t(axes.of[0])] = a.x;
+    out[std::size_t(axes.of[1])] = a.y;
+    out[std::size_t(axes.of[2])] = a.z;
+    return out;
+  }
+};
+
+}  // namespace
+
+std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
+  std::vector<BodyKind> all;
+  const Frames frames{plan.axes};
+  const double h = s.h();
+  // A particle of two dimensions has the mass of the slab between the walls.
+  const double unit = plan.mass / (s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : 1);
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+    const Obstacle& o = s.obstacles[k];
+    if (!o.free) continue;
+    const BodyMass mass = body_mass(s, o);
+    const Solid<double>& solid = plan.solids[k];
+    BodyKind b;
+    b.solid = int(k);
+    b.mass = mass.mass / unit;
+    const Vec3<double> middle = (1 / h) * frames.inside(o.middle() - mass.center);
+    put(b.middle, s.dimensions == 2 ? Vec3<double>{middle.x, 0, middle.z} : middle);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = std::size_t(plan.axes.of[i]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        b.inertia[i][j] = mass.inertia[row][std::size_t(plan.axes.of[j])] / (unit * h * h);
+        b.axes[i][j] = solid.turn[i][j];
+      }
+      b.held[i] = o.free->locks(kLockNames[row]);
+      b.kept[i] = o.free->locks(kLockNames[3 + row]);
+    }
+    if (s.dimensions == 2) b.held[1] = b.kept[0] = b.kept[2] = true;
+    b.radius = size_of(solid) + std::sqrt(dot(middle, middle));
+    b.shell = s.dimensions == 2 ? kFlatShell : kShell;
+    all.push_back(b);
+  }
+  return all;
+}
+
+std::vector<BodyState> first_bodies(const Scene& s, const Plan& plan,
+                                    const std::vector<BodyKind>& kinds) {
+  std::vector<BodyState> all;
+  const Frames frames{plan.axes};
+  const double h = s.h();
+  for (const BodyKind& b : kinds) {
+    const Obstacle& o = s.obstacles[std::size_t(b.solid)];
+    BodyState now;
+    put(now.at.center, plan.solids[std::size_t(b.solid)].center - vec(b.middle));
+    put(now.velocity, without(b.held, (1 / h) * frames.inside(o.free->velocity)));
+    const Vec3<double> rate =
+        (frames.hand * std::numbers::pi / 180) * frames.inside(o.free->angular);
+    put(now.spin, without(b.kept, times(b.inertia, without(b.kept, rate))));
+    now.energy = energy_of(b, now, (1 / h) * frames.inside(s.gravity));
+    all.push_back(now);
+  }
+  return all;
+}
+
+BodyMotion motion_of(const BodyKind& b, const BodyState& now, const Scene& s, const Axes& axes) {
+  const Frames frames{axes};
+  const double h = s.h();
+  const BodyTurn turn(now.at.turn);
+  BodyMotion out;
+  out.middle = s.origin() + h * frames.outside(vec(now.at.center) + turn.of(vec(b.middle)));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      out.turn[std::size_t(axes.of[i])][std::size_t(axes.of[j])] = turn.row[i][j];
+  out.velocity = h * frames.outside(vec(now.velocity));
+  out.spin = frames.hand * frames.outside(BodyInverse(b, turn).rate(vec(now.spin)));
+  return out;
+}
+
+Spots contact_spots(const Scene& s, const Plan& plan, std::size_t more) {
+  Spots out;
+  const double h = s.h();
+  int body = 0;
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+    const Obstacle& o = s.obstacles[k];
+    const Solid<double>& solid = plan.solids[k];
+    SolidSpots& row = out.of_solid.emplace_back();
+    row.first = int(out.all.size());
+    for (const ContactPoint& p : contact_points(s, o)) {
+      ContactSpot& spot = out.all.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) spot.at[i] = p.at[i] / h;
+      spot.radius = p.radius / h;
+    }
+    row.count = int(out.all.size()) - row.first;
+    if (o.free) row.body = body++;
+    const bool endless = !is_bounded(solid) || solid.shape.with([](const auto& shape) {
+      return goes_on(shape, Vec3<double>{1, 1, 1}) || goes_on(shape, Vec3<double>{-1, -1, -1});
+    });
+    row.radius = endless ? kEndless : size_of(solid);
+  }
+  for (std::size_t k = 0; k < more; ++k)
+    out.of_solid.push_back({int(out.all.size()), 0, -1, kEndless});
+  return out;
+}
+
+std::int64_t contact_spots_in(const Scene& s) {
+  std::int64_t all = 0;
+  for (const Obstacle& o : s.obstacles) all += std::int64_t(contact_points(s, o).size());
+  return all;
+}
+
+}  // namespace pbf::program_module

@@ -1,0 +1,111 @@
+// Bodies that the fluid moves (kernels/README.md, "Free bodies").
+#pragma once
+
+#include "kernels/pass_bodies.h"
+#include "lib/program/features/body_rows.h"
+#include "lib/program/features/solids.h"
+
+namespace pbf::PBF_VARIANT {
+
+struct FreeBodies;
+
+/// The needs of a pass that takes what bodies are owed.
+using BodyNeeds = Needs<Looks<field::body_kinds>, Places<field::body_states>,
+                        Places<field::body_steps>, Looks<field::load_sums>,
+                        If<carries_loads, Looks<field::clamp_sums>>, Places<field::push_counts>>;
+/// The needs of one that moves them, too.
+using PlaceNeeds = Needs<BodyNeeds, Places<field::solids>, Places<field::solids_before>,
+                         Places<field::solid_velocity>>;
+
+template <class G>
+BodyRows<typename G::Real> body_rows(const G& c) {
+  return {c[field::body_kinds],
+          c[field::body_states],
+          c[field::body_steps],
+          int(free_bodies(c.scene)),
+          double(c.p.dt),
+          double(c.p.inv_dt) / double(kLoadUnits),
+          moment_unit(c.p.boundary),
+          c[field::load_sums],
+          c.declared(field::clamp_sums),
+          c[field::push_counts],
+          c.declared(field::solids),
+          c.declared(field::solids_before),
+          c.declared(field::solid_velocity)};
+}
+template <class G>
+Vec3<double> gravity_of(const G& c) {
+  return {double(c.p.gravity.x), double(c.p.gravity.y), double(c.p.gravity.z)};
+}
+
+/// Before each substep, when obstacles with a prescribed motion have been put at their places.
+struct MoveBodies {
+  static constexpr PassText text{"free bodies", "predict"};
+  using Needs = pbf::Needs<PlaceNeeds, Looks<field::contact_spots>, Looks<field::solid_spots>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
+    const BodyRows<Real> rows = body_rows(c);
+    ContactScene<Real> contacts;
+    contacts.body = rows.kind, contacts.state = rows.state, contacts.bodies = rows.bodies;
+    contacts.spot = c[field::contact_spots], contacts.solid = c[field::solid_spots];
+    contacts.placed = rows.placed, contacts.before = rows.before;
+    contacts.velocity = rows.velocity;
+    contacts.solids = int(c.scene.obstacles.size() + c.scene.emitters.size());
+    contacts.walls = c.p.boundary, contacts.flat = c.p.dimensions == 2;
+    const Vec3<double> gravity = gravity_of(c);
+    c.items(rows.bodies, StartBodiesPass<Real>{rows, contacts, gravity});
+    const Real range = Real(1) / c.p.boundary.inv_range + Real(kNearRoom);
+    c.items(1, PredictBodiesPass<Real>{rows, range, square_root(dot(gravity, gravity))});
+  }
+};
+
+/// At the start of each iteration.
+struct FollowFluid {
+  static constexpr PassText text{"follow fluid", "delta"};
+  using Needs = PlaceNeeds;
+  template <class G>
+  static void launch(const G& c) {
+    if (c.p.dt > 0) c.items(1, FollowFluidPass<typename G::Real>{body_rows(c)});
+  }
+};
+
+struct EndBodies {
+  static constexpr PassText text{"energy of bodies", "measure"};
+  using Needs = pbf::Needs<BodyNeeds, Places<field::loads>>;
+  template <class G>
+  static void launch(const G& c) {
+    c.items(int(free_bodies(c.scene)),
+            EndBodiesPass<typename G::Real>{body_rows(c), gravity_of(c), c[field::loads]});
+  }
+};
+
+struct FreeBodies {
+  using Passes = PassList<MoveBodies, FollowFluid, EndBodies>;
+  static void add(const Scene& s, auto& b) {
+    if (!has_free_bodies(s)) {
+      if (!s.obstacles.empty()) b.left_out("free bodies", "no obstacle is free");
+      return;
+    }
+    b.start(MoveBodies());
+    if (s.solver.iterations > 0) b.iteration(FollowFluid());
+    b.end(EndBodies());
+  }
+
+  template <class Real>
+  struct Memory : NoMemory {
+    template <class C>
+    void make(C& c) {
+      if (!has_free_bodies(c.scene)) return;
+      const std::vector<BodyKind> kinds = body_kinds(c.scene, c.plan);
+      c.put(field::body_kinds, kinds);
+      c.put(field::body_states, first_bodies(c.scene, c.plan, kinds));
+      const Spots spots = contact_spots(
+          c.scene, c.plan, std::size_t(c.rows_of(field::solid_spots)) - c.scene.obstacles.size());
+      c.put(field::contact_spots, spots.all);
+      c.put(field::solid_spots, spots.of_solid);
+    }
+  };
+};
+
+}  // namespace pbf::PBF_VARIANT
