@@ -98,15 +98,16 @@ ScalarType scalar_type(hid_t dataset, const std::string& path) {
 }
 
 Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout)
-    : chunk_rows_(std::max<hsize_t>(1, layout.chunk_rows)), components_(layout.components) {
-  const int rank = components_ ? 2 : 1;
-  const auto width = static_cast<hsize_t>(components_);
-  const hsize_t none[2] = {0, width}, unlimited[2] = {H5S_UNLIMITED, width};
-  const hsize_t chunk[2] = {chunk_rows_, width};
-  const Space space(H5Screate_simple(rank, none, unlimited));
+    : chunk_rows_(std::max<hsize_t>(1, layout.chunk_rows)) {
+  if (layout.groups) row_.push_back(static_cast<hsize_t>(layout.groups));
+  if (layout.components) row_.push_back(static_cast<hsize_t>(layout.components));
+  const std::vector<hsize_t> none = shape_of(0), unlimited = shape_of(H5S_UNLIMITED),
+                             chunk = shape_of(chunk_rows_);
+  const int rank = static_cast<int>(chunk.size());
+  const Space space(H5Screate_simple(rank, none.data(), unlimited.data()));
   const Properties create(H5Pcreate(H5P_DATASET_CREATE)), link(H5Pcreate(H5P_LINK_CREATE));
   check(H5Pset_create_intermediate_group(link, 1));
-  check(H5Pset_chunk(create, rank, chunk));
+  check(H5Pset_chunk(create, rank, chunk.data()));
   check(H5Pset_fill_time(create, H5D_FILL_TIME_NEVER));  // else every write copies a whole chunk
   if (layout.gzip) {
     check(H5Pset_shuffle(create));
@@ -120,15 +121,28 @@ Column Column::existing(hid_t parent, const std::string& path) {
   Column c;
   c.dataset_ = open_dataset(parent, path);
   const auto dims = shape(c.dataset_);
-  hsize_t chunk[2] = {1, 1};
+  hsize_t chunk[3] = {1, 1, 1};
   const Properties create(H5Dget_create_plist(c.dataset_));
-  if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && dims[1] > 64) ||
-      H5Pget_layout(create) != H5D_CHUNKED || H5Pget_chunk(create, 2, chunk) < 1)
+  if (dims.empty() || dims.size() > 3 || (dims.size() > 1 && dims.back() > most_components) ||
+      (dims.size() == 3 && dims[1] > most_groups) || H5Pget_layout(create) != H5D_CHUNKED ||
+      H5Pget_chunk(create, 3, chunk) < 1)
     throw Failure(path + " has a shape that this program does not write");
   c.rows_ = dims[0];
   c.chunk_rows_ = chunk[0];
-  c.components_ = dims.size() == 2 ? static_cast<int>(dims[1]) : 0;
+  c.row_.assign(dims.begin() + 1, dims.end());
   return c;
+}
+
+std::vector<hsize_t> Column::shape_of(hsize_t rows) const {
+  std::vector<hsize_t> shape{rows};
+  shape.insert(shape.end(), row_.begin(), row_.end());
+  return shape;
+}
+
+hsize_t Column::width() const {
+  hsize_t numbers = 1;
+  for (const hsize_t n : row_) numbers *= n;
+  return numbers;
 }
 
 void Column::truncate(hsize_t rows) {
@@ -148,20 +162,18 @@ void Column::write_ahead(const std::vector<double>& chunk) {
 }
 
 void Column::grow(hsize_t rows) {
-  const hsize_t size[2] = {rows, static_cast<hsize_t>(components_)};
-  check(H5Dset_extent(dataset_, size));
+  check(H5Dset_extent(dataset_, shape_of(rows).data()));
   rows_ = rows;
 }
 
 void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values) {
   if (!count) return;
-  const int rank = components_ ? 2 : 1;
-  const auto width = static_cast<hsize_t>(components_);
   if (first + count > rows_) grow(first + count);
   const Space file(H5Dget_space(dataset_));
-  const hsize_t start[2] = {first, 0}, block[2] = {count, width};
-  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
-  const Space memory(H5Screate_simple(rank, block, nullptr));
+  const hsize_t start[3] = {first, 0, 0};
+  const std::vector<hsize_t> block = shape_of(count);
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block.data(), nullptr));
+  const Space memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr));
   check(H5Dwrite(dataset_, type, memory, file, H5P_DEFAULT, values));
 }
 
@@ -173,7 +185,7 @@ std::vector<std::uint64_t> Column::make_room(hsize_t first, hsize_t count) {
   std::vector<std::uint64_t> chunks;
   for (hsize_t at = first; at < end; at += chunk_rows_) {
     write(at, 1, type, row.data());  // HDF5 takes the space of a whole chunk for it
-    const hsize_t corner[2] = {at, 0};
+    const hsize_t corner[3] = {at, 0, 0};
     unsigned filters = 0;
     haddr_t place = HADDR_UNDEF;
     hsize_t bytes = 0;

@@ -54,12 +54,16 @@ struct Layout {
   int components = 0;  ///< 0: one-dimensional; else rows of so many scalars
   bool gzip = false;   ///< shuffle + deflate level 1
   std::string unit;    ///< attribute "units" when not empty
+  int groups = 0;      ///< 0: none; else a row is so many times so many scalars, with three axes
 };
 
 /// A dataset whose first dimension grows. Rows are addressed by the caller; rows never written
 /// hold anything. All members throw Failure.
 class Column {
  public:
+  /// Of a row: a file of unknown origin that has more is refused.
+  static constexpr hsize_t most_components = 64, most_groups = 4096;
+
   Column() = default;
   /// Creates `path` (with the groups on the way) under `parent`, empty, of the file type `type`.
   Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout);
@@ -73,7 +77,8 @@ class Column {
   void write_ahead(const std::vector<double>& chunk);
   void grow(hsize_t rows);
   hsize_t rows() const { return rows_; }
-  hsize_t width() const { return hsize_t(components_ ? components_ : 1); }  ///< numbers of a row
+  hsize_t width() const;                                    ///< numbers of a row
+  const std::vector<hsize_t>& row() const { return row_; }  ///< its axes; empty: a number
   hsize_t chunk_rows() const { return chunk_rows_; }
   bool open() const { return dataset_.open(); }
   /// Writes `count` rows of memory type `type` at row `first`; the dataset grows as needed.
@@ -91,9 +96,12 @@ class Column {
   }
 
  private:
+  /// So many rows, as the shape of a dataset.
+  std::vector<hsize_t> shape_of(hsize_t rows) const;
+
   Dataset dataset_;
   hsize_t rows_ = 0, chunk_rows_ = 0;
-  int components_ = 0;
+  std::vector<hsize_t> row_;
 };
 
 }  // namespace pbf::io_module::h5

@@ -53,6 +53,8 @@ struct RunInfo {
   std::int64_t capacity = 0;           ///< at any time, where the number changes; 0: it does not
   std::int64_t first_update = 0;       ///< of this session
   std::vector<ReadingColumn> columns;  ///< of readings; is not read back
+  /// Names of the free bodies, in the order of Snapshot::bodies.
+  std::vector<std::string> bodies{};
 };
 
 /// What is known when a run ends.
@@ -137,6 +139,7 @@ struct FrameTable {
   std::vector<double> times{};
   std::vector<std::int64_t> counts{}, updates{};
   std::vector<Field> fields{};  ///< position first; those of PointData
+  std::int64_t bodies = 0;      ///< free bodies in every frame
 };
 
 /// Reads a run file, also one still being written or cut off. Throws Error(io) with the reason.
@@ -148,8 +151,10 @@ class RunReader {
   std::vector<std::int64_t> counts() const { return in_.counts; }    ///< particles of each frame
   std::vector<std::int64_t> updates() const { return in_.updates; }  ///< of each frame
   std::vector<std::string> fields() const;                           ///< without position and id
-  /// Frame k (0-based) with all its fields, "position" first; Error(bad_input) when out of range.
+  /// Frame k (0-based) with all its fields, "position" first, and its bodies; Error(bad_input) when
+  /// out of range.
   Snapshot frame(std::int64_t k) const;
+  std::vector<BodyMotion> bodies(std::int64_t k) const;  ///< of frame k alone
   RunInfo info() const;
   std::string status() const;                ///< running, finished, stopped, diverged
   std::vector<RunSession> sessions() const;  ///< empty in files of older versions
@@ -163,6 +168,8 @@ class RunReader {
   std::vector<double> gauge(const std::string& name) const;
 
  private:
+  void require_frame(std::int64_t k) const;
+
   std::string path_;
   FrameTable in_;
 };

@@ -16,6 +16,12 @@ inline constexpr int format_version = 1;
 /// Rows in a chunk of the tables of steps (/VTKHDF/Steps) and of the columns of the log.
 inline constexpr unsigned step_rows = 512, log_rows = 1024;
 
+/// Where the free bodies of every frame are, (frames, bodies, BodyMotion::kNumbers) in float64,
+/// below /pbf; only in runs that have some. Attributes: `names` of the bodies, `columns` and
+/// `units` of their numbers. Rows in a chunk.
+inline constexpr const char* bodies = "frames/bodies";
+inline constexpr unsigned body_rows = 64;
+
 /// Rows of the log and of gauges wait for so many, or so long (s).
 inline constexpr std::size_t waiting_rows = 256;
 inline constexpr double waiting_seconds = 5;

@@ -39,6 +39,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   pbf_ = h5::make_group(file_, "pbf");
   write_info(info);
   make_log(0, 0);
+  make_bodies(0);
   make_gauges(0);
   make_sessions();
   begin_session(info);
@@ -79,6 +80,7 @@ std::uint64_t RunOutput::inode() const {
 
 void RunOutput::add_frame(const Snapshot& s, FramePlaces* places) {
   check_fields(s, places != nullptr);
+  check_bodies(s, places != nullptr);
   if (fields_.empty()) create_fields(s);
   const hsize_t first = s.count == 0 ? end_row_ : whole_chunks(end_row_);  // never behind the end
   frame_row_ = first;
@@ -102,6 +104,7 @@ void RunOutput::add_frame(const Snapshot& s, FramePlaces* places) {
   cell_offsets_.append(std::vector<std::int64_t>{part, 0, 0, 0});
   id_starts_.append(std::vector<std::int64_t>{0, 0, 0, 0});
   updates_.append(s.update);
+  write_bodies(s);
   last_times_[times_.rows() % run_layout::step_rows] = s.time;
   times_.write_ahead(last_times_);
 }

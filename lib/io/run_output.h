@@ -78,6 +78,9 @@ class RunOutput {
   void make_tables(hsize_t frames);
   void make_ids(ScalarType type, hsize_t frames, hsize_t ids, hsize_t rows);
   void make_log(hsize_t frames, hsize_t rows);
+  void make_bodies(hsize_t frames);
+  void check_bodies(const Snapshot& snapshot, bool split) const;
+  void write_bodies(const Snapshot& snapshot);
   void make_gauges(hsize_t rows);
   void write_gauges();
   void write_info(const RunInfo& info);
@@ -120,6 +123,8 @@ class RunOutput {
   std::vector<std::int64_t> parts_;  // particles of each part; frames of the same number share it
   std::vector<double> last_times_ = std::vector<double>(run_layout::step_rows);  ///< s, last chunk
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
+  const std::vector<std::string> body_names_;
+  h5::Column bodies_;                         ///< closed in a run without free bodies
   const std::vector<ReadingColumn> columns_;  ///< of readings
   std::vector<h5::Column> gauges_;            ///< time, update, then those of the gauges
   Waiting<std::vector<double>> waiting_gauges_;

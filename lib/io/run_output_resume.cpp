@@ -55,6 +55,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   pbf_ = h5::open_group(file_, "pbf");
   open_steps(frames);
   make_log(static_cast<hsize_t>(frames), static_cast<hsize_t>(rows.log));
+  make_bodies(static_cast<hsize_t>(frames));
   open_further(static_cast<hsize_t>(rows.log));
   make_gauges(static_cast<hsize_t>(rows.gauges));
   opening_ = false;

@@ -1,5 +1,6 @@
 // RunOutput: the log and the readings of gauges, one column per number or vector, written in
-// batches.
+// batches; the free bodies of every frame.
+#include "lib/base/error.h"
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
@@ -80,6 +81,44 @@ void RunOutput::write_gauges() {
     first += column.width();
   }
   waiting_gauges_.rows.clear();
+}
+
+void RunOutput::make_bodies(hsize_t frames) {
+  if (body_names_.empty()) return;
+  const h5::Layout layout{run_layout::body_rows, BodyMotion::kNumbers, false, "",
+                          static_cast<int>(body_names_.size())};
+  bodies_ = column(pbf_, run_layout::bodies, H5T_IEEE_F64LE, layout, frames);
+  const std::vector<hsize_t> row{body_names_.size(), BodyMotion::kNumbers};
+  const h5::Dataset dataset = h5::open_dataset(pbf_, run_layout::bodies);
+  if (opening_) {
+    if (bodies_.row() != row || h5::read_texts(dataset, "names") != body_names_)
+      throw h5::Failure(std::string("/pbf/") + run_layout::bodies + " is not of these bodies");
+    return;
+  }
+  h5::write_texts(dataset, "names", body_names_);
+  std::vector<std::string> columns, units;
+  for_each_number(body_columns(body_names_[0]), Series::poses,
+                  [&](const ReadingColumn& c, int component, std::size_t) {
+                    columns.push_back(number_name(c, component));
+                    units.emplace_back(c.unit);
+                  });
+  h5::write_texts(dataset, "columns", columns);
+  h5::write_texts(dataset, "units", units);
+}
+
+void RunOutput::check_bodies(const Snapshot& s, bool split) const {
+  if (s.bodies.size() != body_names_.size() || (split && !s.bodies.empty()))
+    throw Error(ExitCode::internal, "run file: bad snapshot: it has " +
+                                        std::to_string(s.bodies.size()) + " free bodies, the run " +
+                                        std::to_string(body_names_.size()));
+}
+
+void RunOutput::write_bodies(const Snapshot& s) {
+  if (!bodies_.open()) return;
+  std::vector<double> row;
+  for (const BodyMotion& body : s.bodies)
+    BodyMotion::each(body, [&](double x) { row.push_back(x); });
+  bodies_.append(row);
 }
 
 }  // namespace pbf::io_module

@@ -19,6 +19,7 @@ RunOutput::RunOutput(const RunInfo& info, bool gzip)
     : gzip_(gzip),
       expected_(
           static_cast<std::size_t>(std::max({std::int64_t{0}, info.particles, info.capacity}))),
+      body_names_(info.bodies),
       columns_(info.columns) {}
 
 h5::Column RunOutput::column(hid_t parent, const std::string& path, hid_t type,

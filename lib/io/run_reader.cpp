@@ -17,6 +17,7 @@ namespace pbf::io_module {
 namespace {
 
 const std::string kGauges = std::string("pbf/gauges");
+const std::string kBodies = std::string("pbf/") + run_layout::bodies;
 
 FrameTable::Field describe(hid_t vtk, const std::string& name, const std::string& path,
                            std::size_t n) {
@@ -48,6 +49,30 @@ FieldArray read_rows(hid_t vtk, const FrameTable::Field& place, std::size_t fram
   return f;
 }
 
+/// The shape of the dataset of the free bodies. Failure for one that this program does not write.
+std::vector<hsize_t> shape_of_bodies(hid_t bodies) {
+  const auto dims = h5::shape(bodies);
+  if (dims.size() != 3 || dims[1] < 1 || dims[1] > h5::Column::most_groups ||
+      dims[2] != BodyMotion::kNumbers)
+    throw h5::Failure("/" + kBodies + " has a shape that this program does not write");
+  return dims;
+}
+
+std::vector<BodyMotion> read_bodies(hid_t file, std::size_t frame, std::size_t count) {
+  std::vector<BodyMotion> bodies(count);
+  if (count == 0) return bodies;
+  const h5::Dataset d = h5::open_dataset(file, kBodies);
+  const auto dims = shape_of_bodies(d);
+  if (frame >= dims[0] || dims[1] != count)
+    throw h5::Failure("/" + kBodies + " ends before the frame does");
+  const std::vector<hsize_t> block{1, dims[1], dims[2]};
+  std::vector<double> numbers(h5::claimed(d, block, sizeof(double)));
+  h5::read_block(d, frame, block, H5T_NATIVE_DOUBLE, numbers.data());
+  auto next = numbers.begin();
+  for (BodyMotion& body : bodies) BodyMotion::each(body, [&](double& x) { x = *next++; });
+  return bodies;
+}
+
 RunInfo read_info(hid_t pbf) {
   RunInfo info;
   run_layout::for_each_text(info, [&](const char* name, std::string& text, bool newer = false) {
@@ -63,6 +88,8 @@ RunInfo read_info(hid_t pbf) {
   info.particles = h5::read_number<std::int64_t>(pbf, "particles");
   if (h5::has_attribute(pbf, "capacity"))
     info.capacity = h5::read_number<std::int64_t>(pbf, "capacity");
+  if (h5::has_link(pbf, run_layout::bodies))
+    info.bodies = h5::read_texts(h5::open_dataset(pbf, run_layout::bodies), "names");
   run_layout::for_each_quantity(
       info, [&](const char* name, const char*, std::span<double> out, bool newer) {
         if (newer && !h5::has_link(pbf, name)) return;
@@ -102,6 +129,11 @@ FrameTable scan(hid_t file) {
       in.fields.push_back(describe(vtk, name, "PointData/" + name, n));
   }
   for (const auto& f : in.fields) n = std::min(n, f.offsets.size());
+  if (h5::has_link(file, kBodies)) {
+    const auto dims = shape_of_bodies(h5::open_dataset(file, kBodies));
+    in.bodies = static_cast<std::int64_t>(dims[1]);
+    n = std::min<std::size_t>(n, dims[0]);
+  }
   in.times.resize(n);
   in.updates.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -167,17 +199,30 @@ std::vector<std::string> RunReader::fields() const {
   return names;
 }
 
-Snapshot RunReader::frame(std::int64_t k) const {
+void RunReader::require_frame(std::int64_t k) const {
   if (k < 0 || k >= frames())
     bad_input(path_, "there is no frame " + std::to_string(k) +
                          (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
                                    : "; the file has no frames yet"));
+}
+
+std::vector<BodyMotion> RunReader::bodies(std::int64_t k) const {
+  require_frame(k);
+  return with_file(
+      path_, "cannot read the bodies of frame " + std::to_string(k), [&](const h5::Reading& file) {
+        return read_bodies(file, static_cast<std::size_t>(k), static_cast<std::size_t>(in_.bodies));
+      });
+}
+
+Snapshot RunReader::frame(std::int64_t k) const {
+  require_frame(k);
   const auto at = static_cast<std::size_t>(k);
   const auto count = static_cast<std::size_t>(in_.counts[at]);
   return with_file(path_, "cannot read frame " + std::to_string(k), [&](const h5::Reading& file) {
     const h5::Group vtk = h5::open_group(file, "VTKHDF");
     Snapshot s{in_.updates[at], in_.times[at], count, {}};
     for (const auto& f : in_.fields) s.fields.push_back(read_rows(vtk, f, at, count));
+    s.bodies = read_bodies(file, at, static_cast<std::size_t>(in_.bodies));
     return s;
   });
 }

@@ -48,6 +48,10 @@ struct ReadingColumn {
 /// over an interval of length 0 is 0.
 std::vector<ReadingColumn> reading_columns(const Scene& scene, const Plan& plan);
 
+/// The columns of the poses of a free body: the numbers of a BodyMotion in their order. Those of a
+/// prescribed motion are the first two.
+std::vector<ReadingColumn> body_columns(const std::string& name);
+
 /// Calls f(column, component, number) for each number of a series in their order.
 template <class F>
 void for_each_number(const std::vector<ReadingColumn>& columns, Series series, F&& f) {

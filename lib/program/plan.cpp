@@ -11,6 +11,7 @@
 #include "lib/base/error.h"
 #include "lib/program/axes.h"
 #include "lib/program/calibrate.h"
+#include "lib/program/free_bodies.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
@@ -174,6 +175,13 @@ double table_bytes(double columns, double rows) {
   return columns * (2.3e4 + std::floor(rows / 1024) * 1024 * 8);
 }
 
+/// Bytes of the dataset of free bodies: chunks of 64 frames, and its index (measured).
+double body_bytes(const Scene& s, double frames) {
+  if (!has_free_bodies(s)) return 0;
+  const double row = 8.0 * BodyMotion::kNumbers * double(free_bodies(s));
+  return 1.9e4 + std::ceil(frames / 64) * 64 * row;
+}
+
 /// Of a frame, if no sink takes any.
 double mean_particles(const Plan& plan, const Scene& s) {
   if (!has_emitters(s)) return double(plan.most_particles());
@@ -208,7 +216,8 @@ void plan_files(Plan& plan, const Scene& s) {
         (frames * row * mean + 12 * n) / (s.output->compression == Compression::gzip ? 1.45 : 1) +
         frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +
         table_bytes(log_columns(plan, s), double(schedule.measures_until(all))) +
-        table_bytes(gauge_columns(plan), double(schedule.gauges_until(all)));
+        table_bytes(gauge_columns(plan), double(schedule.gauges_until(all))) +
+        body_bytes(s, frames);
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
   if (s.render) {
@@ -224,7 +233,7 @@ void plan_files(Plan& plan, const Scene& s) {
 }  // namespace
 
 double run_file_datasets(const Plan& plan, const Scene& scene) {
-  return kOtherDatasets + log_columns(plan, scene) + gauge_columns(plan);
+  return kOtherDatasets + log_columns(plan, scene) + gauge_columns(plan) + has_free_bodies(scene);
 }
 
 UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lib/base/json.h"
+#include "lib/program/body_mass.h"
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/threads.h"
@@ -59,6 +60,22 @@ Json emission_json(const Plan& plan, const Scene& scene) {
   return out;
 }
 
+/// One object per free body. In two dimensions mass and inertia are of 1 m of width.
+Json bodies_json(const Scene& scene) {
+  Json out = Json::array();
+  for (const Obstacle& o : scene.obstacles) {
+    if (!o.free) continue;
+    const BodyMass m = body_mass(scene, o);
+    out.push_back({{"name", o.name},
+                   {"mass_kg", m.mass},
+                   {"volume_m3", m.volume},
+                   {"center_m", m.center},
+                   {"inertia_kg_m2", m.inertia},
+                   {"lock", o.free->lock}});
+  }
+  return out;
+}
+
 }  // namespace
 
 Json plan_json(const Plan& plan, const Scene& s) {
@@ -79,6 +96,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"particles", plan.particles},
           {"most_particles", plan.most_particles()},
           {"emitters", emission_json(plan, s)},
+          {"free_bodies", bodies_json(s)},
           {"spacing_m", s.fluid.spacing},
           {"h_m", s.h()},
           {"end_s", totals.end},

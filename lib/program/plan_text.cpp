@@ -4,6 +4,8 @@
 
 #include "lib/base/text.h"
 #include "lib/program/axes.h"
+#include "lib/program/body_mass.h"
+#include "lib/program/free_bodies.h"
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
@@ -95,6 +97,22 @@ std::string viscosity_line(const Plan& plan, const Scene& s) {
       plan.viscosity.sweeps == 1 ? "" : "s", plan.viscosity.factor, own, nu / own);
 }
 
+/// The obstacles that the fluid moves.
+std::string bodies_part(const Scene& s) {
+  if (!has_free_bodies(s)) return "";
+  const bool flat = s.dimensions == 2;
+  std::string out = "obstacles that the fluid moves\n";
+  for (const Obstacle& o : s.obstacles) {
+    if (!o.free) continue;
+    const BodyMass m = body_mass(s, o);
+    out += fmt::format("  {}: {:.6g} {}, {:.6g} kg/m^3, the fluid has {:g}", o.name, m.mass,
+                       flat ? "kg/m" : "kg", m.mass / m.volume, s.fluid.rest_density);
+    if (!o.free->lock.empty()) out += "; locked: " + base_module::joined(o.free->lock, ", ");
+    out += "\n";
+  }
+  return out;
+}
+
 std::string passes_part(const Plan& plan, const Scene& s) {
   std::string out =
       plan.finest_level == 0
@@ -170,8 +188,8 @@ std::string plan_summary(const Plan& plan, const Scene& s, const std::string& ru
 }
 
 std::string plan_details(const Plan& plan, const Scene& s) {
-  std::string out = emission_text(s, plan) + files_part(plan, s) + memory_part(plan, s) +
-                    passes_part(plan, s) + grid_part(plan, s);
+  std::string out = emission_text(s, plan) + bodies_part(s) + files_part(plan, s) +
+                    memory_part(plan, s) + passes_part(plan, s) + grid_part(plan, s);
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;

@@ -72,13 +72,18 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
   all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
   for (const Obstacle& o : s.obstacles) {
     if (!o.moves()) continue;
-    all.push_back({"pose", o.name, "", "m", "", now, 3, poses});
-    all.push_back({"pose", o.name, "turn", "1", "", now, 9, poses});
-    if (!o.free) continue;
-    all.push_back({"pose", o.name, "velocity", "m/s", "", now, 3, poses});
-    all.push_back({"pose", o.name, "spin", "rad/s", "", now, 3, poses});
+    const std::vector<ReadingColumn> of = body_columns(o.name);
+    all.insert(all.end(), of.begin(), o.free ? of.end() : of.begin() + 2);
   }
   return all;
+}
+
+std::vector<ReadingColumn> body_columns(const std::string& name) {
+  const auto column = [&](const char* what, const char* unit, int components) {
+    return ReadingColumn{"pose", name, what, unit, "", Join::now, components, Series::poses};
+  };
+  return {column("", "m", 3), column("turn", "1", 9), column("velocity", "m/s", 3),
+          column("spin", "rad/s", 3)};
 }
 
 std::vector<double> pose_readings(const Scene& s, double time,

@@ -45,10 +45,11 @@ double top_of(const Solid<double>& s, const Double3& up) {
                        : -std::numeric_limits<double>::infinity();
 }
 
-/// m along `up`, of the highest place of any obstacle between start and end.
+/// m along `up`, of the highest place of any obstacle between start and end; of free bodies at the
+/// start, since the fluid decides where they are later.
 double top_of_solids(const Scene& scene, const Double3& up) {
   double top = -std::numeric_limits<double>::infinity();
-  const int times = has_moving_obstacles(scene) ? 256 : 0;
+  const int times = has_prescribed_obstacles(scene) ? 256 : 0;
   for (int i = 0; i <= times; ++i)
     for (const Solid<double>& s : solids_in_metres(scene, scene.time.end * i / std::max(times, 1)))
       top = std::max(top, top_of(s, up));
@@ -243,6 +244,15 @@ Reach reach_of(const Scene& scene, const Double3& up, std::int64_t particles) {
       fastest = std::max(fastest, std::sqrt(square + 2 * g * std::max(0.0, fall)));
     const double rising = std::max(0.0, dot(p.velocity, up));
     top = std::max(top, p.top + (g > 0 ? 0.5 * rising * rising / g : 0));
+  }
+  // A body that falls throws up fluid as a parcel does.
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
+    const auto& body = scene.obstacles[k].free;
+    if (!body || body->locks("z")) continue;
+    const Vec3<double>& c = solids[k].center;
+    const double fall = dot(Double3{c.x, c.y, c.z}, up) - rest.surface;
+    fastest = std::max(
+        fastest, std::sqrt(dot(body->velocity, body->velocity) + 2 * g * std::max(0.0, fall)));
   }
   const double spread = volume > 0 ? std::max(0.0, energy / volume) : 0;
 

@@ -21,7 +21,7 @@ std::string frame_path(const std::string& dir, std::int64_t index) {
 /// The fields of a picture, without those that it does not read.
 Snapshot needed_part(const Snapshot& snapshot, ColorBy color) {
   check_fields(snapshot, color);
-  Snapshot part{snapshot.update, snapshot.time, snapshot.count, {}};
+  Snapshot part{snapshot.update, snapshot.time, snapshot.count, {}, snapshot.bodies};
   for (const auto& field : snapshot.fields)
     if (field.name == "position" || field.name == about(color).field) part.fields.push_back(field);
   return part;

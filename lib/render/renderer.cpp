@@ -216,7 +216,7 @@ Renderer::~Renderer() = default;
 
 Image Renderer::draw(const Snapshot& snapshot) {
   View& view = impl_->view;
-  if (view.solids_at) view.solids = view.solids_at(snapshot.time);
+  if (view.solids_at) view.solids = view.solids_at(snapshot.time, snapshot.bodies);
   const Projection projection = projection_of(view, snapshot.time);
   collect(snapshot, view, projection, impl_->particles);
   Image image;

@@ -43,8 +43,8 @@ struct View {
   std::vector<Solid<double>> solids{};  ///< obstacles: lengths in m, along the scene's axes
   /// Of those whose surface comes from a file, by their number: what is drawn of it.
   std::vector<std::shared_ptr<const std::vector<MeshTriangle>>> surfaces{};
-  /// Where they are at a time, s; empty: they stand.
-  std::function<std::vector<Solid<double>>(double)> solids_at{};
+  /// Where they are at a time, s, with these free bodies; empty: they stand.
+  std::function<std::vector<Solid<double>>(double, const std::vector<BodyMotion>&)> solids_at{};
   std::array<std::array<bool, 2>, 3> open{};  ///< of each axis, min and max: no wall, solids go on
 };
 

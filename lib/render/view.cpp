@@ -52,7 +52,10 @@ View view_of(const Scene& scene, std::int64_t particles) {
           drawn_triangles(*file->surface, o.meters()));
   }
   if (has_moving_obstacles(scene))
-    view.solids_at = [scene](double time) { return solids_in_metres(scene, time); };
+    view.solids_at = [now = scene](double time, const std::vector<BodyMotion>& bodies) mutable {
+      place_bodies(now, bodies);
+      return solids_in_metres(now, time);
+    };
   for (int k = 0; k < 3; ++k)
     view.open[k] = {scene.domain.is_open(k, false), scene.domain.is_open(k, true)};
   const Reach reach = reach_of(scene, view.up, particles);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/program/field.h"
+#include "lib/program/free_bodies.h"
 #include "lib/program/motion.h"
 #include "lib/program/time_levels.h"
 #include "lib/program/time_order.h"
@@ -83,7 +84,7 @@ std::string Guard::remedy(const GuardEvent& e) const {
 
 Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const {
   const int level = finest_level(scene_);  // at a coarser level the run would have continued
-  Scene s = scene_at_level(scene_, level);
+  Scene s = begun_with_bodies(scene_at_level(scene_, level), good_.bodies);
   s.time.adaptive.reset();
   s.solver.prestabilize = false;  // it starts from a state of the run
   s.settle.reset();

@@ -12,6 +12,7 @@
 #include "lib/base/version.h"
 #include "lib/io/particle_file.h"
 #include "lib/io/run_path.h"
+#include "lib/program/free_bodies.h"
 #include "lib/program/threads.h"
 #include "lib/run/load_run.h"
 #include "lib/run/prestabilize.h"
@@ -54,6 +55,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.capacity = changes_rows(scene) ? run.plan.most_particles() : 0;
   info.first_update = run.from.update();
   info.columns = run.plan.columns;
+  info.bodies = names_of_bodies(scene);
   return info;
 }
 

@@ -9,6 +9,7 @@
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
+#include "lib/program/free_bodies.h"
 #include "lib/run/run.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
@@ -152,7 +153,8 @@ std::string energy_lines(const Diagnostics& first, const Diagnostics& last, cons
   if (std::isfinite(at_rest)) out += fmt::format(", {:.6g} J at rest on the floor", at_rest);
   out += "\n";
   if (last.moved)
-    out += fmt::format("  work              {:.6g} J of what moves by itself{}\n", last.work,
+    out += fmt::format("  work              {:.6g} J of what moves{}{}\n", last.work,
+                       last.bodies.empty() ? " by itself" : ", free bodies too",
                        last.inflow != 0 ? ", and of what came and went" : "");
   const std::string kept = kept_line(first, last, at_rest);
   out += kept;
@@ -180,6 +182,19 @@ std::string emission_lines(const Diagnostics& last, const std::vector<ReadingCol
       out += fmt::format("  {:17} {} particles, {:.6g} kg{}\n", kind + " " + c.of, particles,
                          number, kind == "sink" ? " taken" : "");
   });
+  return out;
+}
+
+/// Where the free bodies are at the end.
+std::string body_lines(const Diagnostics& last, const Scene& scene) {
+  std::string out;
+  const std::vector<std::string> names = names_of_bodies(scene);
+  for (std::size_t k = 0; k < last.bodies.size(); ++k) {
+    const BodyMotion& b = last.bodies[k];
+    out += fmt::format("  {:17} at ({:.6g}, {:.6g}, {:.6g}) m, {:.3g} m/s, {:.3g} rad/s\n",
+                       "body " + names.at(k), b.middle[0], b.middle[1], b.middle[2],
+                       length(b.velocity), length(b.spin));
+  }
   return out;
 }
 
@@ -222,7 +237,7 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
   if (comes_and_goes(scene))
     out = fmt::format("particles           {} at the start, {} at the end\n", plan.particles,
                       last.particles) +
-          emission_lines(last, plan.columns);
+          emission_lines(last, plan.columns) + body_lines(last, scene);
   out += progress_lines(run, wall);
   out += fmt::format("speed               {} particle-updates/s in these {}\n",
                      si_number(loop > 0 ? double(plan.particles) * own / loop : 0),

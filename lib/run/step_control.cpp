@@ -24,7 +24,8 @@ AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
 double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
 
 std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
-  // Prescribed motions are known up to the next choice.
+  // Prescribed motions are known up to the next choice, those of free bodies now.
+  place_bodies(scene_, m.bodies);
   const double next = m.time + scene_.measure_every * scene_.time.step;
   double acceleration = greatest_pull(scene_, m.time, next);
   const double speed = std::max(

@@ -40,7 +40,7 @@ class AdaptiveStep {
  private:
   std::string change(int to, std::int64_t update, bool alarm);
 
-  Scene scene_;
+  Scene scene_;  ///< with its free bodies where they were last measured
   int finest_;
   StepHistory h_;
 };

@@ -168,21 +168,24 @@ Snapshot ComparedRun::frame(std::int64_t k) const {
   return s;
 }
 
-FramePairs pair_frames(const ComparedRun& a, const ComparedRun& b) {
+FramePairs pair_times(const std::vector<double>& a, const std::vector<double>& b, double apart) {
   FramePairs out;
-  const double half = 0.5 * std::min(a.scene.time.step, b.scene.time.step);
   std::size_t i = 0, k = 0;
-  while (i < a.times.size() && k < b.times.size()) {
-    if (std::fabs(a.times[i] - b.times[k]) <= half)
+  while (i < a.size() && k < b.size()) {
+    if (std::fabs(a[i] - b[k]) <= apart)
       out.common.emplace_back(i++, k++);
-    else if (a.times[i] < b.times[k])
-      out.only_a.push_back(a.times[i++]);
+    else if (a[i] < b[k])
+      out.only_a.push_back(a[i++]);
     else
-      out.only_b.push_back(b.times[k++]);
+      out.only_b.push_back(b[k++]);
   }
-  out.only_a.insert(out.only_a.end(), a.times.begin() + std::ptrdiff_t(i), a.times.end());
-  out.only_b.insert(out.only_b.end(), b.times.begin() + std::ptrdiff_t(k), b.times.end());
+  out.only_a.insert(out.only_a.end(), a.begin() + std::ptrdiff_t(i), a.end());
+  out.only_b.insert(out.only_b.end(), b.begin() + std::ptrdiff_t(k), b.end());
   return out;
+}
+
+FramePairs pair_frames(const ComparedRun& a, const ComparedRun& b) {
+  return pair_times(a.times, b.times, 0.5 * std::min(a.scene.time.step, b.scene.time.step));
 }
 
 CompareResult compare_files(const std::string& path_a, const std::string& path_b) {
@@ -211,6 +214,7 @@ CompareResult compare_files(const std::string& path_a, const std::string& path_b
   const bool exact = same_scene && same_bits(a.info, b.info);
   for (ComparePart& p : compare_frames(a, b, frames, exact, result))
     result.parts.push_back(std::move(p));
+  if (auto bodies = compare_bodies(a, b, frames, exact)) result.parts.push_back(std::move(*bodies));
   return result;
 }
 

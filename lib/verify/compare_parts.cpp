@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/program/dissipation.h"
+#include "lib/program/free_bodies.h"
 
 namespace pbf::verify_module {
 namespace {
@@ -27,6 +28,20 @@ double kinetic_energy(Solver& solver, const Scene& scene, const Plan& plan) {
   return 0.5 * plan.mass * scene.h() * scene.h() * squares;
 }
 
+/// Where the free bodies are; prescribed motions are the same by their scene.
+void add_bodies(Solver& solver, const Scene& scene, const Plan& plan, std::vector<Reading>& out) {
+  if (!has_free_bodies(scene)) return;
+  const Snapshot now = solver.download({}, ScalarType::f64).get();
+  const std::vector<double> values = pose_readings(scene, now.time, now.bodies);
+  const std::vector<std::string> names = names_of_bodies(scene);
+  for_each_number(plan.columns, Series::poses,
+                  [&](const ReadingColumn& c, int component, std::size_t k) {
+                    if (std::ranges::find(names, c.of) == names.end()) return;
+                    out.push_back({"poses", "poses: " + c.of + " " + number_name(c, component),
+                                   c.unit, values[k], scale_of(c, plan.columns, values), 0});
+                  });
+}
+
 }  // namespace
 
 std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Plan& plan,
@@ -46,6 +61,7 @@ std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Pla
                          c.grain.value + c.grain.of_sum / time});
         });
   }
+  add_bodies(solver, scene, plan, out);
   return out;
 }
 

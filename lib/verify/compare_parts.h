@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,9 +26,10 @@ inline constexpr double kNoiseFactor = 4;
 /// thousands of particles, so the largest change over a few members is a poorer estimate.
 inline constexpr double kSpreadFactor = 8;
 
-/// A load on a wall or an obstacle, or a reading of a gauge, as a number to compare.
+/// A load on a wall or an obstacle, a reading of a gauge, or where a free body is, as a number to
+/// compare.
 struct Reading {
-  std::string stage;  ///< "loads" or "gauges"
+  std::string stage;  ///< "loads", "gauges", "poses" ...
   std::string what, unit;
   double value = 0;
   double scale = 0;  ///< reference for rounding if it is more than |value|
@@ -35,7 +37,7 @@ struct Reading {
 };
 
 /// Readings of the last `updates` updates, since the last call or since a state with empty sums was
-/// set. Empty if the scene has neither loads nor gauges.
+/// set; of free bodies those of now. Empty if the scene has neither loads, gauges nor free bodies.
 std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Plan& plan,
                                    int updates);
 
@@ -155,11 +157,18 @@ struct FramePairs {
   std::vector<double> only_a, only_b;  ///< s
 };
 FramePairs pair_frames(const ComparedRun& a, const ComparedRun& b);
+/// The same for any ascending times (s) that differ by at most `apart`.
+FramePairs pair_times(const std::vector<double>& a, const std::vector<double>& b, double apart);
 
 /// Parts "particles" and "distributions" over the common frames. `exact`: both sides promise
 /// identical bits.
 std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun& b,
                                         const FramePairs& frames, bool exact,
                                         CompareResult& result);
+
+/// Part "bodies": where the free bodies are in the common frames and in the rows of the log at
+/// common times. None if no run has free bodies.
+std::optional<ComparePart> compare_bodies(const ComparedRun& a, const ComparedRun& b,
+                                          const FramePairs& frames, bool exact);
 
 }  // namespace pbf::verify_module

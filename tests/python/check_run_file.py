@@ -43,6 +43,11 @@ def check_steps(vtk, updates):
     check(np.all(np.diff(times) > 0), "times do not grow")
     check(len(updates) == count and np.all(np.diff(updates[:]) > 0), "updates do not grow")
     check(steps["Values"].attrs["units"] == "s", "times are not in seconds")
+    if "bodies" in updates.parent:
+        bodies = updates.parent["bodies"]
+        check(bodies.shape == (count, len(bodies.attrs["names"]), len(bodies.attrs["columns"])),
+              "bodies have not one row per step, body and column")
+        check(len(bodies.attrs["units"]) == bodies.shape[2], "bodies have not a unit per column")
     for name in ("PartOffsets", "NumberOfParts", "PointOffsets"):
         check(steps[name].shape == (count,), f"Steps/{name} has not one row per step")
     for name in ("CellOffsets", "ConnectivityIdOffsets"):

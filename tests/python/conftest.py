@@ -34,7 +34,7 @@ def pbf():
 
 @pytest.fixture(scope="session")
 def samples():
-    """Folder of constant.h5, varying.h5, gzip_double.h5 and changing.h5
+    """Folder of constant.h5, varying.h5, gzip_double.h5, changing.h5 and bodies.h5
     (tests/unit/io/run_file_sample_for_python)."""
     return Path(os.environ["PBF_SAMPLE_FOLDER"]).resolve()
 

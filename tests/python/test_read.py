@@ -296,6 +296,34 @@ def test_poses_of_obstacles_that_move_come_from_the_log(pbf, tmp_path):
         run.obstacle_pose("blade", 0.5)
 
 
+def test_free_bodies_are_read_by_name_over_the_frames(samples, tmp_path):
+    run = pbf_tools.open(samples / "bodies.h5")
+    assert list(run.bodies) == ["float", "raft"]
+    body = run.bodies["float"]
+    assert np.array_equal(body.time, run.times) and len(run.times) == 4
+    places = [[0.5, 0.25, 1 + 0.1 * k] for k in range(4)]
+    assert np.allclose(body.middle, places, rtol=0, atol=1e-15)
+    for k, turn in enumerate(body.turn):
+        c, s = np.cos(np.radians(10 * k)), np.sin(np.radians(10 * k))
+        assert np.allclose(turn, [[c, -s, 0], [s, c, 0], [0, 0, 1]], rtol=0, atol=1e-15)
+    assert np.array_equal(body.velocity, np.tile([0, 0, 0.1], (4, 1)))
+    assert np.array_equal(body.spin, np.tile([0, 0, 2], (4, 1)))
+    assert np.array_equal(run.bodies["raft"].middle[:, 2], np.arange(4))
+    turn, middle = run.obstacle_pose("float", run.times)
+    assert np.allclose(turn, body.turn) and np.allclose(middle, body.middle)
+    assert run.log.units["pose/float/spin_z"] == "rad/s"
+    with pytest.raises(pbf_tools.UnknownName, match="no free body flaot, did you mean float"):
+        run.bodies["flaot"]
+    path = shutil.copy(samples / "bodies.h5", tmp_path / "short.h5")
+    with h5py.File(path, "r+") as file:
+        file["pbf/frames/bodies"].resize(2, axis=0)
+    assert len(pbf_tools.open(path).times) == 2
+
+
+def test_a_run_without_free_bodies_has_none(samples):
+    assert pbf_tools.open(samples / "constant.h5").bodies == {}
+
+
 def test_a_run_is_read_while_it_is_written_and_after_it_was_killed(pbf, tmp_path):
     process = subprocess.Popen(
         [pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={every: 0.002}", "--set",

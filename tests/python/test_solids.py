@@ -114,6 +114,8 @@ def test_particles_outside_the_domain_are_left_out_but_of_what_moves():
     moving = solids.solid_of({**keys, "motion": {"kind": "sine"}}, D, False, LOW, HIGH)
     assert rest.points[:, 0].min() >= 0 and 0.4 < len(rest.points) / len(moving.points) < 0.6
     assert moving.moves and not rest.moves
+    floating = solids.solid_of({**keys, "free": {"density": "500"}}, D, False, LOW, HIGH)
+    assert floating.moves and np.array_equal(floating.points, moving.points)
     turn = solids.turn_about(np.array([0, 0, 1]), 90)
     assert np.allclose(moving.at(turn, np.array([1, 0.5, 0.5]))[:, 1], 0.5 + moving.points[:, 0])
 

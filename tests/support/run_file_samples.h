@@ -51,18 +51,33 @@ inline Snapshot with_ids(Snapshot s, const std::vector<std::int64_t>& ids,
   return s;
 }
 
-/// Frame k of a run in which particles appear and disappear: as many as at the start, fewer, none,
-/// and some whose ids have gaps.
-inline Snapshot changing_sample(std::int64_t k) {
+/// Where two free bodies are in frame k.
+inline std::vector<BodyMotion> sample_bodies(std::int64_t k) {
+  std::vector<BodyMotion> bodies(2);
+  double number = 100.0 * static_cast<double>(k);
+  for (BodyMotion& body : bodies) BodyMotion::each(body, [&](double& x) { x = number += 1; });
+  return bodies;
+}
+
+/// The particles of frame k of a run in which they appear and disappear: as many as at the start,
+/// fewer, none, and some whose ids have gaps.
+inline Snapshot changing_particles(std::int64_t k) {
   if (k % 8 == 5) return sample(k, 0);
   if (k % 4 != 3) return sample(k, k % 3 == 2 ? 30 : 40);
   std::vector<std::int64_t> ids;
   for (std::int64_t i = 0; i < 35; ++i) ids.push_back(k + i + i / 3);
   return with_ids(sample(k, ids.size()), ids);
 }
+/// The same with free bodies.
+inline Snapshot changing_sample(std::int64_t k) {
+  Snapshot s = changing_particles(k);
+  s.bodies = sample_bodies(k);
+  return s;
+}
 
 inline bool same(const Snapshot& a, const Snapshot& b) {
   if (a.update != b.update || a.time != b.time || a.count != b.count) return false;
+  if (a.bodies != b.bodies) return false;
   if (a.fields.size() != b.fields.size() || a.fields.at(0).name != "position") return false;
   for (const auto& f : a.fields) {
     const FieldArray* g = b.find(f.name);
@@ -101,6 +116,7 @@ inline RunInfo sample_info(std::int64_t particles) {
 inline RunInfo changing_info() {
   RunInfo info = sample_info(40);
   info.capacity = 44;
+  info.bodies = {"float", "raft"};
   return info;
 }
 

@@ -8,22 +8,24 @@ from .errors import (BadInput, Diverged, FileError, MissingPackage, NotThere, Pb
                      Stopped, ToolError, UnknownName)
 
 if TYPE_CHECKING:
+    from .bodies import Body
     from .fields import Field, Frame
     from .run_file import Gauge, Run, open
     from .simulate import plan, run
     from .sweep import Batch, batch, read_batch
     from .table import Table, read_csv
 
-__all__ = ["BadInput", "Batch", "Diverged", "Field", "FileError", "Frame", "Gauge",
+__all__ = ["BadInput", "Batch", "Body", "Diverged", "Field", "FileError", "Frame", "Gauge",
            "MissingPackage", "NotThere", "PbfError", "PbfWarning", "Run", "Stopped", "Table",
            "ToolError", "UnknownName", "batch", "open", "plan", "read_batch", "read_csv", "run"]
 __version__ = "0.1.0"
 
 # Where the rest is. It needs numpy and h5py, and is read when it is asked for: the command line
 # must come as far as a message when they are not installed.
-_PLACES = {"Field": "fields", "Frame": "fields", "Gauge": "run_file", "Run": "run_file",
-           "open": "run_file", "plan": "simulate", "run": "simulate", "Batch": "sweep",
-           "batch": "sweep", "read_batch": "sweep", "Table": "table", "read_csv": "table"}
+_PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "run_file",
+           "Run": "run_file", "open": "run_file", "plan": "simulate", "run": "simulate",
+           "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table",
+           "read_csv": "table"}
 
 
 def __getattr__(name: str) -> Any:

@@ -102,6 +102,8 @@ def scan(file: h5py.File) -> Index:
         for key in vtk["PointData"]:
             fields[key] = _place(vtk, f"PointData/{key}", f"Steps/PointDataOffsets/{key}")
         n = min([n, *(len(place.offsets) for place in fields.values())])
+    if "bodies" in pbf["frames"]:
+        n = min(n, len(pbf["frames/bodies"]))
     counts = vtk["NumberOfPoints"][:][steps["PartOffsets"][:n]] if n else np.zeros(0, np.int64)
     info, units = _info(pbf)
     units.update({key: place.unit for key, place in fields.items()})

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from . import index
+from .bodies import Bodies, read_bodies
 from .errors import BadInput, UnknownName, unknown
 from .fields import Field, Frames
 from .run_path import run_path
@@ -215,6 +216,17 @@ class Run:
         {}
         """
         return self._read(_gauges, "cannot read the gauges")
+
+    @property
+    def bodies(self) -> Bodies:
+        """The obstacles that the fluid moves (`free`) in every frame, by name; empty where the
+        scene has none. Between frames, `obstacle_pose` and the columns `pose/NAME/...` of the log
+        have more.
+
+        >>> open("run.vtkhdf").bodies
+        {}
+        """
+        return self._read(lambda file: read_bodies(file, self.times), "cannot read the bodies")
 
     def obstacle_pose(self, name: str, time: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where a moving obstacle is at a time, s: its turn (3, 3) and the place of its middle (3,),

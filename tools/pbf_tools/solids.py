@@ -38,7 +38,8 @@ def solid_of(obstacle: Mapping[str, Any], spacing: float, flat: bool, low: np.nd
 
     BadInput for a shape that is not known here, and for a plane that moves, which has no end.
     """
-    shape, name, moves = obstacle["shape"], str(obstacle["name"]), "motion" in obstacle
+    shape, name = obstacle["shape"], str(obstacle["name"])
+    moves = "motion" in obstacle or "free" in obstacle
     keys = {key: np.asarray(value, float) for key, value in obstacle.items()
             if key in ("min", "max", "center", "from", "to", "radius", "point", "normal",
                        "turn_axis", "turn_angle")}

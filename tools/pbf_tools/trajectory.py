@@ -135,7 +135,12 @@ class Trajectory:
         if not solid.moves:
             return np.broadcast_to(solid.points[:, self.axes],
                                    (len(numbers), len(solid.points), len(self.axes)))
-        poses = self.run.obstacle_pose(solid.name, self.run.times[numbers])
+        bodies = self.run.bodies
+        if solid.name in bodies:  # its frames are exact, between rows of the log it is not known
+            body = bodies[solid.name]
+            poses = body.turn[numbers], body.middle[numbers]
+        else:
+            poses = self.run.obstacle_pose(solid.name, self.run.times[numbers])
         return np.take(solid.at(*poses), self.axes, axis=-1)
 
     def _check(self, x: np.ndarray, numbers: list[int]) -> None:

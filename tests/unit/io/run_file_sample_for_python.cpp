@@ -64,6 +64,33 @@ void write_changing(const std::string& path) {
   writer.finish({"finished"});
 }
 
+/// Two free bodies: in frame k the first is k/10 m higher and turned by k * 10 degrees about z.
+void write_bodies(const std::string& path) {
+  RunInfo info = test::sample_info(8);
+  info.bodies = {"float", "raft"};
+  for (const std::string& name : info.bodies)
+    for (const ReadingColumn& c : body_columns(name)) info.columns.push_back(c);
+  RunWriter writer(path, info, false);
+  for (std::int64_t k = 0; k < 4; ++k) {
+    Snapshot s = falling_block(k, 2, ScalarType::f32);
+    s.bodies.resize(2);
+    const double angle = 0.17453292519943295 * double(k);
+    s.bodies[0] = {{0.5, 0.25, 1 + 0.1 * double(k)},
+                   {Double3{std::cos(angle), -std::sin(angle), 0},
+                    Double3{std::sin(angle), std::cos(angle), 0}, Double3{0, 0, 1}},
+                   {0, 0, 0.1},
+                   {0, 0, 2}};
+    s.bodies[1].middle = {2, 2, double(k)};
+    LogRow row = test::sample_row(k);
+    row.measures.time = s.time;
+    for (const BodyMotion& body : s.bodies)
+      BodyMotion::each(body, [&](double x) { row.poses.push_back(x); });
+    writer.log(row);
+    writer.write(std::move(s));
+  }
+  writer.finish({"finished"});
+}
+
 }  // namespace
 
 TEST_CASE("run files for the Python checks", "[.][sample]") {
@@ -76,4 +103,5 @@ TEST_CASE("run files for the Python checks", "[.][sample]") {
   write_sample(path + "/varying.h5", true, false, ScalarType::f32);
   write_sample(path + "/gzip_double.h5", false, true, ScalarType::f64);
   write_changing(path + "/changing.h5");
+  write_bodies(path + "/bodies.h5");
 }
