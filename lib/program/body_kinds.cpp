@@ -1,5 +1,6 @@
 #include "lib/program/body_kinds.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,6 +33,13 @@ struct Frames {
   }
 };
 
+/// m: largest distance of a point of its section from Obstacle::middle(), in two dimensions.
+double flat_size(const Scene& s, const Obstacle& o) {
+  double most = 0;
+  for (const ContactPoint& p : contact_points(s, o)) most = std::max(most, length(p.at) + p.radius);
+  return most;
+}
+
 }  // namespace
 
 std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
@@ -60,7 +68,8 @@ std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
       b.kept[i] = o.free->locks(kLockNames[3 + row]);
     }
     if (s.dimensions == 2) b.held[1] = b.kept[0] = b.kept[2] = true;
-    b.radius = size_of(solid) + std::sqrt(dot(middle, middle));
+    b.radius = (s.dimensions == 2 ? flat_size(s, o) / h : size_of(solid)) +
+               std::sqrt(dot(vec(b.middle), vec(b.middle)));
     b.shell = s.dimensions == 2 ? kFlatShell : kShell;
     all.push_back(b);
   }

@@ -34,7 +34,11 @@ struct Obstacle {
   bool moves() const { return motion || free; }
   /// Whether the fluid may move a solid of its shape.
   bool may_be_free() const {
-    return std::visit([](const auto& keys) { return requires { keys.moments(false); }; }, shape);
+    return std::visit(
+        [](const auto& keys) {
+          return requires { keys.moments(false); };
+        },
+        shape);
   }
   /// The keys of its shape, which must be `Shape`.
   template <class Shape>

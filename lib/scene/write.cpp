@@ -64,10 +64,10 @@ class Writer {
   void enter(const Block& entry) {
     const bool first = block_ == nullptr;
     block_ = &entry;
+    if (!entry.list && entry.list_around()) return;  // written with its entries
     if (comments_ && !first) out_ += "\n";
     if (entry.path.empty()) return;
     if (entry.list) return write_list(entry);
-    if (entry.list_around()) return;  // written with its entries
     const std::string leaf = entry.leaf();
     const std::string indent = indent_of(entry).substr(2);
     if (!entry.is_present(object_)) {  // skip children of an absent block

@@ -151,7 +151,7 @@ TEST_CASE("fluid and a free body keep their momentum together to rounding, with 
   const double size = std::fabs(before[0]);
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(total(k) == Approx(before[k]).margin((is_double() ? 1e-9 : 1e-4) * size));
-  CHECK(mass * solver->diagnose().bodies.at(0).velocity[0] > 0.2 * size);  // it was hit
+  CHECK(mass * solver->diagnose().bodies.at(0).velocity[0] > 0.02 * size);  // it was hit
 }
 
 TEST_CASE("a body moves and turns along and about no axis that is locked") {
@@ -215,7 +215,7 @@ TEST_CASE("bodies that meet keep their momentum and stay out of each other and o
   float_free(c.scene);
   Placing put(c.scene);
   put.box({20, 28, 28}, {24, 32, 32}).free = of_density(500, {1, 0, 0});
-  put.sphere({32, 30.5, 30}, 2).free = of_density(500);
+  put.sphere({32, 30, 30}, 2).free = of_density(500);
   put.box({44, 20, 20}, {46, 40, 40});
   c = here(c);
   auto solver = make(c);

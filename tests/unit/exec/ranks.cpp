@@ -134,6 +134,16 @@ TEST_CASE("a scene with periodic axes is refused on several ranks by its key") {
       Catch::Contains("cannot run on several ranks: it has periodic axes (domain.periodic)"));
 }
 
+TEST_CASE("a scene with free bodies is refused on several ranks by its key") {
+  const RankScene m("configs/floating", {"fluid.spacing=0.04"});
+  CHECK_THROWS_WITH(require_ranks(m.scene, m.plan, 2),
+                    Catch::Contains("scene floating cannot run on several ranks: the fluid moves "
+                                    "some of its obstacles (obstacles[].free)"));
+  Scene fixed = m.scene;
+  for (Obstacle& o : fixed.obstacles) o.free.reset();
+  CHECK_NOTHROW(require_ranks(fixed, m.plan, 2));
+}
+
 TEST_CASE("slabs: particles are shared equally, and every rank has a layer") {
   std::vector<std::int64_t> in_layer(20, 100);
   const Slabs four(in_layer, 4, 1);

@@ -37,7 +37,7 @@ const std::string kMiddle = "[0.3, 0.4, 0.4]";
 TEST_CASE("free meshes: one too light by its mass is refused when its volume is known") {
   CHECK(start_error(start_scene(kMiddle, "{mass: 0.25}")) == "no error");
   CHECK(start_error(start_scene(kMiddle, "{mass: 0.2}")) ==
-        "2 scene.yaml:7:36: obstacles[0].free (hull): makes a density of 8.333 kg/m^3, 0.0083 of "
+        "2 scene.yaml:7:35: obstacles[0].free (hull): makes a density of 8.333 kg/m^3, 0.0083 of "
         "fluid.rest_density: the fluid would throw about so light a body, whose coupling to it is "
         "tested down to 0.05; give at least 0.24 kg");
 }

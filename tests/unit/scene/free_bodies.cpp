@@ -54,7 +54,7 @@ TEST_CASE("free bodies: all keys are read, also by --set, and written back") {
 }
 
 TEST_CASE("free bodies: exactly one of density and mass is given") {
-  const std::string place = "2 scene.yaml:6:86: obstacles[0].free: ";
+  const std::string place = "2 scene.yaml:6:82: obstacles[0].free: ";
   CHECK(solids_error(ball("{density: 500, mass: 3}")) ==
         place + "a free body needs density or mass, not both; remove one");
   for (const char* none : {"{}", "on", "{lock: [x]}"})
@@ -63,7 +63,8 @@ TEST_CASE("free bodies: exactly one of density and mass is given") {
   CHECK(contains(solids_error(ball("{density: 0}")), "obstacles[0].free.density: "));
   CHECK(contains(solids_error(ball("{mass: -1}")), "obstacles[0].free.mass: "));
   CHECK(contains(solids_error(ball("{density: 500, lock: [x, roll]}")),
-                 "obstacles[0].free.lock: \"roll\" is none of x, y, z, rx, ry, rz"));
+                 "obstacles[0].free.lock: \"roll\" is not one of x, y, z, rx, ry, rz; did you "
+                 "mean rx?"));
   CHECK(contains(solids_error(ball("{dnsity: 500}")), "did you mean obstacles[0].free.density?"));
 }
 
