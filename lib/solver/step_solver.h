@@ -43,9 +43,8 @@ class StepSolver final : public Solver, public Inspection {
         exec_(std::forward<Args>(executor)...) {
     bool part = false;  // of several ranks
     if constexpr (requires { exec_.rows(); }) part = exec_.rows() != nullptr;
-    const auto n = std::int64_t(particles.size());
-    if (!part && plan.particles != n)
-      throw Error(ExitCode::internal, "a plan of other particles than " + std::to_string(n));
+    if (!part && plan.particles != std::int64_t(particles.size()))
+      throw Error(ExitCode::internal, "the plan is one of another number of particles");
     const Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
     stepper_ = std::make_unique<Stepping>(exec_, scene_, plan_, std::move(s));
@@ -222,10 +221,9 @@ class StepSolver final : public Solver, public Inspection {
     m.inflow = inflow_energy(stepper_->emission(), scene_, plan_);
     m.moved = has_work(scene_) || comes_and_goes(scene_);
     const double unit = plan_.mass * scene_.h() * scene_.h();
+    const double lag = m.velocity_lag, dt = scene_.time.step;
     if (scene_.tank_motion)
-      m.power += unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - m.velocity_lag,
-                                                   scene_.time.step),
-                                        m.velocity_lag, scene_.time.step);
+      m.power += unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - lag, dt), lag, dt);
     m.bodies = stepper_->bodies();
     if (has_moving_obstacles(scene_))
       for (const Load& l : stepper_->loads(Interval::goes_on)) m.solid_work += unit * l.work;

@@ -10,12 +10,11 @@ namespace pbf::PBF_VARIANT {
 struct FreeBodies;
 
 /// The needs of a pass that takes what bodies are owed.
-using BodyNeeds = Needs<Looks<field::body_kinds>, Places<field::body_states>,
-                        Places<field::body_steps>, Looks<field::load_sums>,
-                        If<carries_loads, Looks<field::clamp_sums>>, Places<field::push_counts>>;
-/// The needs of one that moves them, too.
-using PlaceNeeds = Needs<BodyNeeds, Places<field::solids>, Places<field::solids_before>,
-                         Places<field::solid_velocity>>;
+using BodyNeeds =
+    Needs<Looks<field::body_kinds>, Looks<field::body_states>, Places<field::body_states>,
+          Looks<field::body_steps>, Places<field::body_steps>, Looks<field::load_sums>,
+          If<carries_loads, Looks<field::clamp_sums>>, Looks<field::push_counts>,
+          Places<field::push_counts>>;
 
 template <class G>
 BodyRows<typename G::Real> body_rows(const G& c) {
@@ -41,7 +40,10 @@ Vec3<double> gravity_of(const G& c) {
 /// Before each substep, when obstacles with a prescribed motion have been put at their places.
 struct MoveBodies {
   static constexpr PassText text{"free bodies", "predict"};
-  using Needs = pbf::Needs<PlaceNeeds, Looks<field::contact_spots>, Looks<field::solid_spots>>;
+  using Needs = pbf::Needs<BodyNeeds, Looks<field::solids>, Places<field::solids>,
+                           Looks<field::solids_before>, Places<field::solids_before>,
+                           Looks<field::solid_velocity>, Places<field::solid_velocity>,
+                           Looks<field::contact_spots>, Looks<field::solid_spots>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
@@ -63,7 +65,7 @@ struct MoveBodies {
 /// At the start of each iteration.
 struct FollowFluid {
   static constexpr PassText text{"follow fluid", "delta"};
-  using Needs = PlaceNeeds;
+  using Needs = pbf::Needs<BodyNeeds, Places<field::solids>, Places<field::solid_velocity>>;
   template <class G>
   static void launch(const G& c) {
     if (c.p.dt > 0) c.items(1, FollowFluidPass<typename G::Real>{body_rows(c)});
@@ -72,7 +74,7 @@ struct FollowFluid {
 
 struct EndBodies {
   static constexpr PassText text{"energy of bodies", "measure"};
-  using Needs = pbf::Needs<BodyNeeds, Places<field::loads>>;
+  using Needs = pbf::Needs<BodyNeeds, Looks<field::loads>, Places<field::loads>>;
   template <class G>
   static void launch(const G& c) {
     c.items(int(free_bodies(c.scene)),
