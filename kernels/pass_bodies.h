@@ -5,8 +5,9 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// h: how much farther a body may be than it was predicted to be at the start of the substep. What
-/// it is owed beyond this, it gets in the next one.
+/// h: how far a body may be from where it was predicted to be at the start of the substep, beside
+/// the way that was predicted: it may stop, and a little more. What it is owed beyond this, it gets
+/// in the next one.
 constexpr double kFollowRoom = 0.1;
 
 /// What the passes of bodies share.
@@ -62,6 +63,20 @@ struct BodyRows {
     put(u.linear, v - cross(rate, vec(s.at.center)));
     put(u.angular, rate);
     put(u.middle, {double(frame.center.x), double(frame.center.y), double(frame.center.z)});
+  }
+};
+
+/// After a state was set: puts the bodies to where they are.
+template <class Real>
+struct PlaceBodiesPass {
+  const BodyKind* kind;
+  const BodyState* state;
+  PosedSolid<Real>* placed;  ///< out
+  Solid<Real>* before;       ///< out
+  PBF_HD void operator()(int b) const {
+    const int k = kind[b].solid;
+    static_cast<BodyFrame<Real>&>(placed[k].solid) = frame_at<Real>(kind[b], state[b].at);
+    before[k] = placed[k].solid;
   }
 };
 
@@ -145,11 +160,13 @@ struct FollowFluidPass {
       const BodyState before = rows.state[b];
       BodyState& s = rows.state[b];
       follow(rows.kind[b], inverse, s, 1);
+      const BodyStep& step = rows.step[b];
+      const double room = kFollowRoom + way(b, vec(step.velocity), vec(step.rate));
       const double far = away(b, inverse);
-      if (far > kFollowRoom) {
+      if (far > room) {
         s = before;
         const double near = away(b, inverse);
-        const double part = near < kFollowRoom ? (kFollowRoom - near) / (far - near) : 0;
+        const double part = near < room ? (room - near) / (far - near) : 0;
         follow(rows.kind[b], inverse, s, part);
       }
     }
@@ -158,13 +175,16 @@ struct FollowFluidPass {
   }
 
  private:
+  /// h: at most so far does a point of the body go in a substep.
+  PBF_HD double way(int b, Vec3<double> velocity, Vec3<double> rate) const {
+    return rows.dt * (square_root(dot(velocity, velocity)) +
+                      rows.kind[b].radius * square_root(dot(rate, rate)));
+  }
   /// h: at most so far is a point of the body from where it was predicted to be.
   PBF_HD double away(int b, const BodyInverse& inverse) const {
     const BodyState& s = rows.state[b];
     const BodyStep& step = rows.step[b];
-    const Vec3<double> v = vec(s.velocity) - vec(step.velocity),
-                       w = inverse.rate(vec(s.spin)) - vec(step.rate);
-    return rows.dt * (square_root(dot(v, v)) + rows.kind[b].radius * square_root(dot(w, w)));
+    return way(b, vec(s.velocity) - vec(step.velocity), inverse.rate(vec(s.spin)) - vec(step.rate));
   }
 };
 

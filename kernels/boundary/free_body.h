@@ -127,9 +127,9 @@ PBF_HD BodyPose moved(const BodyPose& from, Vec3<double> velocity, Vec3<double> 
   return to;
 }
 
-/// The frame of its solid at a pose.
+/// The frame of its solid at a pose: the same bits wherever it is asked for.
 template <class Real>
-PBF_HD BodyFrame<Real> frame_at(const BodyKind& b, const BodyPose& pose) {
+PBF_HD_APART BodyFrame<Real> frame_at(const BodyKind& b, const BodyPose& pose) {
   const BodyTurn turn(pose.turn);
   BodyFrame<Real> out;
   const Vec3<double> c = vec(pose.center) + turn.of(vec(b.middle));

@@ -171,21 +171,6 @@ auto with_file(const std::string& path, const std::string& what, Action action) 
 
 }  // namespace
 
-void try_run_file(const std::string& path) {
-  h5::trial(path, [&path] {
-    const RunReader run(path);
-    run.info();
-    run.status();
-    run.sessions();
-    for (const std::string& name : run.log_columns()) run.log_column(name);
-    for (const std::string& name : run.gauges()) run.gauge(name);
-    if (run.frames() > 0) {
-      run.frame(0);
-      run.frame(run.frames() - 1);
-    }
-  });
-}
-
 RunReader::RunReader(const std::string& path) : path_(path) {
   note_input(path);
   in_ = with_file(path, "cannot read the run file",

@@ -43,9 +43,9 @@ class StepSolver final : public Solver, public Inspection {
         exec_(std::forward<Args>(executor)...) {
     bool part = false;  // of several ranks
     if constexpr (requires { exec_.rows(); }) part = exec_.rows() != nullptr;
-    if (!part && plan.particles != std::int64_t(particles.size()))
-      throw Error(ExitCode::internal, "a plan of " + std::to_string(plan.particles) +
-                                          " particles for " + std::to_string(particles.size()));
+    const auto n = std::int64_t(particles.size());
+    if (!part && plan.particles != n)
+      throw Error(ExitCode::internal, "a plan of other particles than " + std::to_string(n));
     const Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
     stepper_ = std::make_unique<Stepping>(exec_, scene_, plan_, std::move(s));

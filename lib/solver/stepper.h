@@ -111,9 +111,8 @@ class Stepper {
   }
   /// Largest number of steps between two such calls.
   std::int64_t most_steps() {
-    std::int64_t most = std::numeric_limits<std::int64_t>::max();
-    c_.for_features(
-        [&](auto& memory) { most = std::min(most, memory.most_steps(c_.scene, plan_)); });
+    auto most = std::numeric_limits<std::int64_t>::max();
+    c_.for_features([&](auto& m) { most = std::min(most, m.most_steps(c_.scene, plan_)); });
     return most;
   }
 

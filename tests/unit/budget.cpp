@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2270},      {"kernels", 6880},   {"lib/base", 1850},    {"lib/campaign", 3850},
-    {"lib/exec", 6900}, {"lib/io", 4000},    {"lib/program", 8370}, {"lib/render", 3930},
-    {"lib/run", 6170},  {"lib/scene", 8450}, {"lib/solver", 3050},  {"lib/verify", 2200},
+    {"app", 2270},      {"kernels", 7490},   {"lib/base", 1850},    {"lib/campaign", 3850},
+    {"lib/exec", 6900}, {"lib/io", 4130},    {"lib/program", 9020}, {"lib/render", 3950},
+    {"lib/run", 6170},  {"lib/scene", 9130}, {"lib/solver", 3070},  {"lib/verify", 2320},
 };
 constexpr int kLongestFile = 300;
 

@@ -105,6 +105,14 @@ struct FreeBodies {
       c.put(field::contact_spots, spots.all);
       c.put(field::solid_spots, spots.of_solid);
     }
+    void stand(auto& c, double) {
+      if (!has_free_bodies(c.scene)) return;
+      c.template as_pass<MoveBodies>([&](const auto& pass) {
+        const BodyRows<Real> rows = body_rows(pass);
+        pass.items(rows.bodies,
+                   PlaceBodiesPass<Real>{rows.kind, rows.state, rows.placed, rows.before});
+      });
+    }
   };
 };
 
