@@ -208,8 +208,8 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
   if (comes_and_goes(scene))
     out = fmt::format("particles           {} at the start, {} at the end\n", plan.particles,
                       last.particles) +
-          emission_lines(last, plan.columns) + body_lines(last, scene);
-  out += progress_lines(run, wall);
+          emission_lines(last, plan.columns);
+  out += body_lines(last, scene) + progress_lines(run, wall);
   out += fmt::format("speed               {} particle-updates/s in these {}\n",
                      si_number(loop > 0 ? double(plan.particles) * own / loop : 0),
                      duration_text(loop));

@@ -19,7 +19,7 @@ struct Floating {
 constexpr const char* kTwoBodies =
     "obstacles:\n"
     "  - {name: ball, shape: sphere, center: [0.3, 0.5, 0.5], radius: 0.2, free: {density: 500}}\n"
-    "  - {name: post, shape: sphere, center: [0.5, 0.5, 0.8], radius: 0.2}\n"
+    "  - {name: post, shape: sphere, center: [0.5, 0.5, 0.9], radius: 0.2}\n"
     "  - {name: buoy, shape: sphere, center: [0.7, 0.5, 0.5], radius: 0.2, free: {mass: 2}}\n";
 
 std::vector<BodyMotion> bodies_at(std::int64_t k, double off) {
