@@ -21,7 +21,7 @@ struct BodyRows {
   double unit, moment_unit;            ///< h/s and h of LoadSums
   const LoadSums* sums;                ///< as in LoadBook
   const LoadSums* clamps;              ///< the same; may be null
-  std::int64_t* pushes;                ///< in/out: LoadBook::pushes
+  PushSums* pushes;                    ///< in/out: LoadBook::pushes
   PosedSolid<Real>* placed = nullptr;  ///< out: of the bodies
   Solid<Real>* before = nullptr;       ///< the same
   SolidVelocity* velocity = nullptr;   ///< the same
@@ -33,11 +33,11 @@ struct BodyRows {
     const int wall = load_row_of_solid(kind[b].solid);
     LoadSums all = all_parts(sums, wall);
     if (clamps) all = all_parts(clamps, wall, all);
-    std::int64_t pushed = 0;
+    PushSums pushed;
     for (int part = 0; part < kLoadParts; ++part) {
-      std::int64_t& one = pushes[wall * kLoadParts + part];
-      pushed += one;
-      one = 0;
+      PushSums& one = pushes[wall * kLoadParts + part];
+      pushed.count += one.count, pushed.lever += one.lever;
+      one = {};
     }
     double way[3], moment[3];
     for (int k = 0; k < 3; ++k) {
@@ -47,7 +47,9 @@ struct BodyRows {
     now.seen = all;
     put(s.owed, vec(s.owed) + vec(way));
     put(s.owed_spin, vec(s.owed_spin) + (vec(moment) - cross(vec(s.at.center), vec(way))));
-    s.added = max2(kAddedShare * double(pushed) / kind[b].mass, kAddedKept * s.added);
+    s.added = max2(kAddedShare * double(pushed.count), kAddedKept * s.added);
+    s.added_inertia =
+        max2(kAddedShare / kLeverUnits * double(pushed.lever), kAddedKept * s.added_inertia);
   }
   PBF_HD BodyInverse inverse(int b) const { return {kind[b], BodyTurn(step[b].start.turn)}; }
   /// Moves body b from the start of the substep to its end.

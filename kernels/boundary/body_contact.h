@@ -46,8 +46,9 @@ namespace pbf::PBF_VARIANT {
 
 /// Rounds over the contacts of all bodies.
 constexpr int kContactRounds = 24;
-/// Share of an overlap that a substep removes.
-constexpr double kOverlapShare = 0.2;
+/// Share of an overlap that a substep removes, and h: at most so much. Between two things that come
+/// together there is no room for a body, which would be thrown to and fro.
+constexpr double kOverlapShare = 0.2, kOverlapMost = 0.005;
 
 /// Everything that contacts are found with.
 template <class Real>
@@ -194,7 +195,8 @@ PBF_HD void solve_contacts(const BodyKind* body, State* state, BodyStep* step, i
           ease += answer(other, other_arm, n);
         }
         if (!(ease > 0)) continue;
-        const double allowed = -(c.gap > 0 ? c.gap : kOverlapShare * c.gap) / dt;
+        const double allowed =
+            -(c.gap > 0 ? c.gap : max2(kOverlapShare * c.gap, -kOverlapMost)) / dt;
         const double sum = max2(c.impulse + (allowed - speed) / ease, 0.0);
         const double more = sum - c.impulse;
         if (more == 0) continue;

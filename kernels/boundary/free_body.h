@@ -23,8 +23,6 @@ struct BodyKind {
   double axes[3][3] = {};           ///< Solid::turn
   double radius = 0;                ///< h, largest distance of its points from the center of mass
   bool held[3] = {}, kept[3] = {};  ///< along and about which axes it does not move
-  /// Inertia of its surface with a mass of 1 over that of the body.
-  double shell = 1;
 };
 
 /// A free body after a substep.
@@ -34,7 +32,8 @@ struct BodyState {
   double spin[3] = {0, 0, 0};       ///< h^2/s, angular momentum about it
   double owed[3] = {0, 0, 0};       ///< h/s, impulse that it has not yet taken
   double owed_spin[3] = {0, 0, 0};  ///< h^2/s, the same of the spin
-  double added = 0;                 ///< mass of the fluid that moves with it, over its own
+  double added = 0;                 ///< mass of the fluid that moves with it
+  double added_inertia = 0;         ///< h^2, of the fluid that turns with it
   double energy = 0;                ///< h^2/s^2, kinetic and potential, after the update
 
   template <class Self, class F>
@@ -45,7 +44,7 @@ struct BodyState {
     for (auto& x : s.spin) f(x);
     for (auto& x : s.owed) f(x);
     for (auto& x : s.owed_spin) f(x);
-    f(s.added), f(s.energy);
+    f(s.added), f(s.added_inertia), f(s.energy);
   }
 };
 
@@ -142,25 +141,30 @@ PBF_HD_APART BodyFrame<Real> frame_at(const BodyKind& b, const BodyPose& pose) {
   return out;
 }
 
-/// Share of the fluid that a body touches in an iteration which moves with it. The sum of a body
-/// and the fluid that it pushes answers an impulse like this much of the fluid; the rest gives way.
-constexpr double kAddedShare = 0.5;
-/// The added mass falls by no more than this factor in an iteration: particles that are not pushed
-/// in one iteration are pushed again in a later one.
+/// The added mass and inertia over those of the particles that are pushed. From 1 on, what a single
+/// particle gives to a body turns their approach at most into as fast a retreat, however light the
+/// body is and wherever it is hit: 1/(m + c) + r^2/(I + c r^2) <= 2/c in masses of a particle.
+constexpr double kAddedShare = 1;
+/// They fall by no more than this factor in an iteration: particles that are not pushed in one
+/// iteration are pushed again in a later one.
 constexpr double kAddedKept = 0.9;
 
-/// The body takes 1/(1 + a) of what it is owed, a = s.added, and the rest later: fluid that moves
-/// along with a body has to be moved by the same impulse. Without this, bodies lighter than the
-/// fluid gain energy without limit (added-mass instability of explicit coupling; Causin, Gerbeau &
-/// Nobile 2005). part: of this share. What is owed along axes that do not move is lost to them.
+/// The body takes m/(m + a) of what it is owed, with the added mass a, and the rest later: fluid
+/// that moves along with a body has to be moved by the same impulse; the same of turns. Without
+/// this, bodies lighter than the fluid gain energy without limit (added-mass instability of
+/// explicit coupling; Causin, Gerbeau & Nobile 2005). part: of this share. What is owed along axes
+/// that do not move is lost to them.
 PBF_HD void follow(const BodyKind& b, const BodyInverse& inverse, BodyState& s, double part) {
   const Vec3<double> owed = without(b.held, vec(s.owed));
-  const Vec3<double> owed_spin = without(b.kept, vec(s.owed_spin));
-  const double share = part / (1 + s.added), turning = part / (1 + b.shell * s.added);
+  const Vec3<double> turn = without(b.kept, vec(s.owed_spin));
+  const double squared = dot(turn, turn);
+  const double ease = squared > 0 ? dot(turn, inverse.rate(turn)) / squared : 0;
+  const double share = part * b.mass / (b.mass + s.added);
+  const double turning = part / (1 + ease * s.added_inertia);
   put(s.velocity, vec(s.velocity) + inverse.velocity(share * owed));
-  put(s.spin, vec(s.spin) + turning * owed_spin);
+  put(s.spin, vec(s.spin) + turning * turn);
   put(s.owed, (1 - share) * owed);
-  put(s.owed_spin, (1 - turning) * owed_spin);
+  put(s.owed_spin, (1 - turning) * turn);
 }
 
 /// h^2/s^2, kinetic and potential.

@@ -27,6 +27,14 @@ struct LoadSums {
   std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
 };
 
+/// The particles that a free body has pushed in an iteration: how many, and the sum of their
+/// squared levers, |r x n|^2 with the arm r from its center and the direction n of the push, in
+/// units of h^2/kLeverUnits.
+struct PushSums {
+  std::int64_t count = 0, lever = 0;
+};
+inline constexpr int kLeverUnits = 1 << 20;
+
 /// Load of one wall since the last reading, per mass of a particle, in the internal frame.
 struct Load {
   double impulse[3] = {0, 0, 0};  ///< h/s
@@ -73,12 +81,10 @@ namespace pbf::PBF_VARIANT {
 /// Where loads are booked.
 template <class Real>
 struct LoadBook {
-  LoadSums* sums = nullptr;    ///< kLoadParts for each wall; null: there are none
-  LoadSums* clamps = nullptr;  ///< the same for predictions; null: these are among `sums`
-  Real moment_scale = 1;       ///< 2^-e, 2^e above the longest edge of the box, h
-  /// Counts what is added to `sums` and `clamps`, with kLoadParts for each wall; null: nothing
-  /// does.
-  std::int64_t* pushes = nullptr;
+  LoadSums* sums = nullptr;      ///< kLoadParts for each wall; null: there are none
+  LoadSums* clamps = nullptr;    ///< the same for predictions; null: these are among `sums`
+  Real moment_scale = 1;         ///< 2^-e, 2^e above the longest edge of the box, h
+  PushSums* pushes = nullptr;    ///< kLoadParts for each wall; null: without free bodies
   const Patch* patch = nullptr;  ///< pressure gauges
   int patches = 0;
   /// Bit k: wall k has sums of its own. Walls beyond the last bit always have them.
@@ -91,14 +97,9 @@ struct LoadBook {
   /// of a step, in the prediction.
   PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way, bool start = false) const {
     LoadSums* const rows = start && clamps ? clamps : sums;
-#if defined(__CUDA_ARCH__)
-    const int part = i % kLoadParts;  // adjacent threads write to different parts
-#else
-    const int part = (i >> 8) % kLoadParts;  // a thread has about 256 adjacent particles
-#endif
+    const int part = part_of(i);
     if (wall > 63 || summed >> wall & 1) {
       LoadSums& to = rows[wall * kLoadParts + part];
-      if (pushes) add_whole(&pushes[wall * kLoadParts + part], 1);
       const Vec3<Real> moment = moment_scale * cross(x, way);
       add_units(&to.way[0], way.x), add_units(&to.moment[0], moment.x);
       add_units(&to.way[1], way.y), add_units(&to.moment[1], moment.y);
@@ -110,7 +111,25 @@ struct LoadBook {
                   Real(-patch_way(patch[k], x, way)));
   }
 
+  /// Counts a push by `way` of particle i, which is at `arm` from the center of a body.
+  PBF_HD void count(int wall, int i, Vec3<Real> arm, Vec3<Real> way) const {
+    const Real squared = dot(way, way);
+    if (!(squared > Real(0))) return;
+    const Vec3<Real> turn = cross(arm, way);
+    const Real lever = min2(dot(turn, turn) / squared, Real(1e6));
+    PushSums& to = pushes[wall * kLoadParts + part_of(i)];
+    add_whole(&to.count, 1);
+    add_whole(&to.lever, std::int64_t(lever * Real(kLeverUnits)));
+  }
+
  private:
+  PBF_HD static int part_of(int i) {
+#if defined(__CUDA_ARCH__)
+    return i % kLoadParts;  // adjacent threads write to different parts
+#else
+    return (i >> 8) % kLoadParts;  // a thread has about 256 adjacent particles
+#endif
+  }
   /// The wall gets the opposite.
   PBF_HD static void add_units(std::int64_t* to, Real x) {
     if (x != Real(0)) add_whole(to, units(-x));

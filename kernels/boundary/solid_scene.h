@@ -54,6 +54,14 @@ PBF_HD PathEnd<Real> keep_out(const SolidScene<Real>& s, bool start, int k, Vec3
                 : keep_out<3>(before, placed.solid, from, to);
 }
 
+/// Books that obstacle k has moved particle i, which is at x, by `way`.
+template <class Real>
+PBF_HD void book_on(const SolidScene<Real>& s, int k, int i, Vec3<Real> x, Vec3<Real> way,
+                    bool start) {
+  s.loads.add(load_row_of_solid(k), i, x, way, start);
+  if (s.loads.pushes) s.loads.count(load_row_of_solid(k), i, x - s.solid[k].solid.center, way);
+}
+
 /// Where solid k carries the point `from` in a step.
 template <class Real>
 PBF_HD Vec3<Real> carried(const SolidScene<Real>& s, int k, Vec3<Real> from) {
@@ -139,7 +147,9 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
                                              int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
-    if (booked && wall < load_row_of_solid(s.obstacles())) s.loads.add(wall, i, target, way, start);
+    if (!booked || wall >= load_row_of_solid(s.obstacles())) return;
+    if (wall < load_row_of_solid(0)) return s.loads.add(wall, i, target, way, start);
+    book_on(s, wall - load_row_of_solid(0), i, target, way, start);
   };
   const auto inside_walls = [&](Vec3<Real> x) {
     const Vec3<Real> in = s.walls.path_end(from, x), way = in - x;
@@ -184,8 +194,7 @@ PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, cons
   if (share > Real(0) && share < Real(1)) {
     const Real left = s.walls.scale - s.walls.template term<S>(place).density;
     for_solids_at<S>(s, x, step, [&](int k, const SolidTerm<Real>& one) {
-      if (k < s.obstacles())
-        s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
+      if (k < s.obstacles()) book_on(s, k, i, x, (factor * left) * one.gradient, false);
     });
   }
   const Real free = factor * max2(Real(1) - share, Real(0));

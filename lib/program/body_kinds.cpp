@@ -12,9 +12,6 @@
 namespace pbf::program_module {
 namespace {
 
-/// Inertia of a thin ball over that of a full one; in two dimensions of a ring over a disc.
-constexpr double kShell = 5.0 / 3, kFlatShell = 2;
-
 /// Vectors of the scene and of the internal frame, whose axes are those of the scene in another
 /// order. hand: -1 if a cross product changes its sign.
 struct Frames {
@@ -70,7 +67,6 @@ std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
     if (s.dimensions == 2) b.held[1] = b.kept[0] = b.kept[2] = true;
     b.radius = (s.dimensions == 2 ? flat_size(s, o) / h : size_of(solid)) +
                std::sqrt(dot(vec(b.middle), vec(b.middle)));
-    b.shell = s.dimensions == 2 ? kFlatShell : kShell;
     all.push_back(b);
   }
   return all;

@@ -26,8 +26,8 @@ inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 /// The same of predictions, in time steps of second order: no share of it is taken over.
 inline constexpr struct ClampRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } clamp_sums{{"clamp sums", per_wall, Life::update}};
-/// How often each wall was booked, in scenes with free bodies.
-inline constexpr struct PushCounts : Plain<std::int64_t, kLoadParts> {
+/// Per wall: kLoadParts times PushSums, in scenes with free bodies.
+inline constexpr struct PushCounts : Plain<PushSums, kLoadParts, std::int64_t> {
 } push_counts{{"push counts", per_wall, Life::update}};
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
@@ -69,7 +69,7 @@ using StartBookNeeds =
 /// clamps: those of field::clamp_sums, or null; patch: those of field::patches.
 template <class Real>
 LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums, LoadSums* clamps,
-                         std::int64_t* pushes, const Patch* patch) {
+                         PushSums* pushes, const Patch* patch) {
   return {sums,
           clamps,
           Real(1 / moment_unit(box)),
