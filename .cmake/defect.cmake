@@ -1,8 +1,10 @@
 # PBF_DEFECT=NAME, for tests/regression/seeded_defects. A defect of tests/regression/defects/table.cmake
 # gives a second CPU solver, `cpu+defect` of `pbf compare`, compiled from copies of the sources with
 # this change. A lie of lies.cmake there gives the target `lie`, one test compiled from such copies.
+# A mistake of mistakes.cmake gives the target `mistake`, one source of tests compiled with the
+# changed file; those of tests/backend with a CPU solver that is compiled with it, too.
 # The sources themselves hold no trace of it.
-set(PBF_DEFECT "" CACHE STRING "Name of a seeded defect or lie (tests/regression/defects)")
+set(PBF_DEFECT "" CACHE STRING "Name of a seeded defect, lie or mistake (tests/regression/defects)")
 if(PBF_DEFECT)
   set(copy ${PROJECT_BINARY_DIR}/defect)
   set(defect_file "")
@@ -15,7 +17,7 @@ if(PBF_DEFECT)
     endif()
   endfunction()
   set(defect_tables ${PROJECT_SOURCE_DIR}/tests/regression/defects)
-  foreach(table table lies stands_once)
+  foreach(table table lies mistakes stands_once)
     include(${defect_tables}/${table}.cmake)
   endforeach()
   if(NOT defect_file)
@@ -26,6 +28,8 @@ if(PBF_DEFECT)
        lib/program/obstacle_motion.h lib/program/posed_solids.h
        lib/program/features/*.h lib/exec/cpu/*.h lib/exec/cpu/*.cpp
        lib/solver/*.h lib/program/field.h tests/unit/solver/*.cpp)
+  list(APPEND sources ${defect_file})
+  list(REMOVE_DUPLICATES sources)
   foreach(source IN LISTS sources)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${source})
     file(READ ${PROJECT_SOURCE_DIR}/${source} text)
@@ -47,6 +51,13 @@ if(PBF_DEFECT)
   endforeach()
   if(defect_stage IN_LIST lie_tests)
     set(PBF_LIE ${copy}/tests/unit/solver/${defect_stage}.cpp)
+    return()
+  endif()
+  if(defect_stage MATCHES "^tests/")
+    set(PBF_MISTAKE ${defect_stage})
+    if(defect_file MATCHES "[.]cpp$")
+      set(PBF_MISTAKEN ${copy}/${defect_file})
+    endif()
     return()
   endif()
   file(GLOB copied ${copy}/lib/exec/cpu/*.cpp)

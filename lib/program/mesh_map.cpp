@@ -150,7 +150,8 @@ class MapBuilder {
                                  std::size_t(bricks_[0]) * std::size_t(bricks_[1])};
     // Along one axis after the other: the largest of three differences is what remains.
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::vector<int> line(std::size_t(bricks_[axis]));
+      const auto bricks = std::size_t(bricks_[axis]);
+      std::vector<int> line(bricks);
       for (std::size_t b = 0; b < out.size(); ++b) {
         if (b / step[axis] % line.size() != 0) continue;
         for (std::size_t k = 0; k < line.size(); ++k) line[k] = out[b + k * step[axis]];

@@ -124,6 +124,20 @@ class FreePlaces {
   double h_, least_;
 };
 
+/// A mesh that is much larger than the domain would have more lines of lattice points than fit into
+/// memory, however thin it is.
+void refuse_beyond_domain(const Scene& scene, const TriangleMesh& mesh, const std::string& path) {
+  const auto [low, high] = box_of(mesh);
+  for (std::size_t a = 0; a < 3; a += scene.plane() ? 2 : 1) {
+    const double from = scene.domain.min[a], to = scene.domain.max[a], d = scene.fluid.spacing;
+    if (low[a] < from - d || high[a] > to + d)
+      bad_input(path, std::string("is outside the domain along ") + "xyz"[a] +
+                          ": it reaches from " + to_text(low[a]) + " to " + to_text(high[a]) +
+                          " m, and the domain from " + to_text(from) + " to " + to_text(to) +
+                          "; move it, lower scale or enlarge the domain");
+  }
+}
+
 /// The lattice points in a mesh.
 Particles fill_mesh(const Scene& scene, const Body& body, const std::string& path,
                     std::string* sha256) {
@@ -132,6 +146,7 @@ Particles fill_mesh(const Scene& scene, const Body& body, const std::string& pat
   place(mesh, {body.scale, body.turn_axis, body.turn_angle, body.translate});
   const double d = scene.fluid.spacing, count = volume_of(mesh) / (d * d * d);
   if (!scene.plane() && count > kMaxParticles) bad_input(path, too_many_text(count));
+  refuse_beyond_domain(scene, mesh, path);
   Particles p;
   p.position = points_in(mesh, d, scene.plane());
   p.velocity.resize(p.size());

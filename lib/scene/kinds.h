@@ -49,6 +49,12 @@ struct KindKey {
   std::size_t most = 0;    ///< largest length of a list of numbers
   bool file = false;       ///< the path of a file
 };
+/// clang before version 17 does not deduce the types of aggregates by itself
+/// (tests/regression/fuzz).
+template <class Member, class Holder>
+KindKey(Member Holder::*, const char*, const char*, Range, const char*, bool = true,
+        FlatY = FlatY::none, bool = false, std::size_t = 0, bool = false)
+    -> KindKey<Member, Holder>;
 
 /// Calls f with each kind of a variant, all defaults, in the order of the list.
 template <class Any, class F>

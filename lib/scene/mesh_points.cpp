@@ -48,7 +48,7 @@ struct Axis {
   std::int64_t n;
   double at(std::int64_t i) const { return low + (double(i) + 0.5) * d; }
   std::int64_t first_from(double x) const {
-    return std::clamp(std::int64_t(std::ceil((x - low) / d - 0.5)), std::int64_t(0), n);
+    return std::int64_t(std::clamp(std::ceil((x - low) / d - 0.5), 0.0, double(n)));
   }
 };
 

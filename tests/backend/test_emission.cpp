@@ -101,6 +101,91 @@ bool same(const SolverState& a, const SolverState& b) {
 
 }  // namespace
 
+TEST_CASE(
+    "emission: a pool that is filled and drained counts what comes and goes, update by update") {
+  const Emitted e(kPool, {});
+  const auto solver = e.solver();
+  for (int update = 3; update <= 30; update += 3) {
+    solver->step(3);
+    const SolverState s = solver->state();
+    CAPTURE(update);
+    const std::vector<double> gone = e.read(*solver, "sink");
+    const std::int64_t all = e.plan.particles + born_in_pool(0.003 * update);
+    REQUIRE(gone[0] > 0);
+    REQUIRE(std::int64_t(s.id.size()) == all - std::int64_t(gone[0]));
+    REQUIRE(std::adjacent_find(s.id.begin(), s.id.end(), std::greater_equal<>()) == s.id.end());
+    REQUIRE(s.id.back() == all - 1);
+  }
+}
+
+TEST_CASE("emission: a sink books mass, momentum and energy of what it takes") {
+  // Half of a block that flies without gravity, and that a nozzle does not reach.
+  const Emitted e(
+      "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+      "fluid: {spacing: 0.05}\n"
+      "bodies: [{shape: block, min: [0.6, 0.6, 0.6], max: [0.9, 0.9, 0.9], velocity: [1, 0.5, "
+      "-0.25]}]\n"
+      "gravity: 0\n"
+      "time: {step: 0.002, end: 1}\n"
+      "emitters: [{name: jet, shape: disc, center: [0.3, 0.3, 0.3], normal: [1, 0, 0], radius: "
+      "0.1, speed: 0.5}]\n"
+      "sinks: [{name: drain, min: [0.6, 0.6, 0.6], max: [0.75, 0.9, 0.9]}]\n",
+      {});
+  const auto solver = e.solver();
+  solver->step(1);
+  const std::vector<double> s = e.read(*solver, "sink");
+  const double mass = 108 * e.plan.mass;
+  CHECK(s[0] == 108);
+  CHECK(s[1] == Approx(mass));
+  CHECK(s[2] == Approx(mass).epsilon(1e-5));
+  CHECK(s[3] == Approx(0.5 * mass).epsilon(1e-5));
+  CHECK(s[4] == Approx(-0.25 * mass).epsilon(1e-5));
+  CHECK(s[5] == Approx(0.5 * 1.3125 * mass).epsilon(1e-5));
+  CHECK(std::int64_t(solver->state().id.size()) == e.plan.particles - 108);
+}
+
+TEST_CASE("emission: what waits in a pipe under water stays in its place, and so does the water") {
+  const Emitted e(
+      "domain: {min: [0, 0, 0], max: [0.8, 0.6, 0.8]}\n"
+      "fluid: {spacing: 0.05}\n"
+      "bodies: [{shape: block, min: [0, 0, 0], max: [0.8, 0.6, 0.4]}]\n"
+      "time: {step: 0.003, end: 1}\n"
+      "emitters: [{name: jet, shape: disc, center: [0.3, 0.3, 0.2], normal: [1, 0, 0], radius: "
+      "0.08, speed: 0}]\n",
+      {});
+  const auto solver = e.solver();
+  const SolverState before = solver->state();
+  solver->step(8);
+  const SolverState after = solver->state();
+  REQUIRE(after.id == before.id);
+  const std::int64_t columns = e.plan.emission.nozzles[0].columns;
+  std::int64_t held = 0;
+  for (std::size_t k = 0; k < after.id.size(); ++k) {
+    double way = 0;  // h
+    for (std::size_t a = 0; a < 3; ++a)
+      way = std::max(way, std::fabs(after.position[3 * k + a] - before.position[3 * k + a]));
+    CAPTURE(after.id[k]);
+    REQUIRE(way < 0.25);
+    if (after.id[k] < e.plan.emission.first_id) continue;
+    ++held;
+    CHECK(way < 1e-6);
+  }
+  CHECK(held == columns * e.plan.emission.layers);
+}
+
+TEST_CASE("emission: the energy that a jet brings under gravity is that of its particles") {
+  std::string text = kJet;
+  text.erase(text.find("gravity: 0\n"), 11);
+  const Emitted e(text, {"bodies=[]"});
+  const auto solver = e.solver();
+  const auto energy = [&](const Diagnostics& m) { return m.kinetic_energy + m.potential_energy; };
+  const double start = energy(solver->diagnose());
+  solver->step(50);
+  const Diagnostics m = solver->diagnose();
+  CHECK(m.inflow > 0);
+  CHECK(energy(m) - start == Approx(m.inflow).epsilon(0.01));
+}
+
 TEST_CASE("emission: every kind of step has the particles of the formula, each with its own id",
           "[slow]") {
   for (const Kind& kind : kKinds) {

@@ -1,4 +1,4 @@
-# Whether every text of table.cmake and lies.cmake still stands exactly once in its file, and every scene is there:
+# Whether every text of table.cmake, lies.cmake and mistakes.cmake still stands exactly once in its file, and every scene is there:
 # cmake -P check.cmake
 set(root ${CMAKE_CURRENT_LIST_DIR}/../../..)
 include(${CMAKE_CURRENT_LIST_DIR}/stands_once.cmake)
@@ -19,3 +19,5 @@ include(${CMAKE_CURRENT_LIST_DIR}/table.cmake)
 message("${count} seeded defects")
 include(${CMAKE_CURRENT_LIST_DIR}/lies.cmake)
 message("${count} with the lies")
+include(${CMAKE_CURRENT_LIST_DIR}/mistakes.cmake)
+message("${count} with the mistakes")

@@ -102,6 +102,20 @@ TEST_CASE("emission: ids are given once, in the order of time, whatever the step
       }
 }
 
+TEST_CASE("emission: emitters whose layers begin at the same time share no ids") {
+  const Scene s =
+      parse(kTwoJets, {"emitters.0.start=0", "emitters.0.end=0.5", "emitters.1.speed=2"});
+  const EmissionPlan plan = plan_emission(s, 64);
+  std::set<std::int64_t> first;
+  for (std::int64_t layer = 0; layer < 12; ++layer) {
+    CAPTURE(layer);
+    if (layer >= plan.layers) REQUIRE(plan.birth(0, layer) == plan.birth(1, layer));
+    CHECK(plan.id(0, layer) + plan.nozzles[0].columns <= plan.id(1, layer));
+    CHECK(first.insert(plan.id(0, layer)).second);
+    CHECK(first.insert(plan.id(1, layer)).second);
+  }
+}
+
 TEST_CASE("emission: layers make the way of the table, and stand still where its speed is 0") {
   Scene s = parse(kTwoJets);
   const std::vector<std::pair<double, double>> rows{{0, 0},   {0.05, 1}, {0.1, 0},

@@ -63,6 +63,21 @@ TEST_CASE("a mesh that makes no body of fluid is refused at its key") {
                  "holds no point of a lattice of fluid.spacing"));
 }
 
+TEST_CASE("a mesh far larger than the domain is refused at once, also if it holds little fluid") {
+  const TemporaryFolder folder;
+  const auto said = [&](const Double3& edges) {
+    folder.write("needle.obj", box_obj(edges));
+    return error_of([&] { emit_particles(parse(scene("", "needle.obj")), folder.path.string()); });
+  };
+  CHECK(contains(
+      said({1e15, 1e-6, 1e-6}),
+      "bodies[0].path: " + (folder.path / "needle.obj").string() +
+          ": is outside the domain along x: it reaches from 0 to 1.0e+12 m, and the domain "
+          "from 0 to 1; move it, lower scale or enlarge the domain"));
+  CHECK(contains(said({1e-6, 1e-6, 1e15}), "is outside the domain along z"));
+  CHECK(contains(said({200, 200, 1e30}), "the scene would have"));
+}
+
 TEST_CASE("in two dimensions a mesh is cut by the plane of the particles") {
   const TemporaryFolder folder;
   folder.write("cube.obj", box_obj(kCube));

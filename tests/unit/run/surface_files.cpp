@@ -142,6 +142,27 @@ TEST_CASE("heights are solid below, over the whole domain, in any order of their
   CHECK(thin_text(s).empty());
 }
 
+TEST_CASE("a bed goes on beyond all sides of a domain that is longer along y") {
+  const TemporaryFolder folder;
+  std::string bed = "x,y,z\n", text = surface_scene(kBed + "}");
+  for (const double y : {0.0, 1.0, 2.0})
+    for (const double x : {0.0, 1.0})
+      bed +=
+          std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(0.4 + 0.1 * y) + "\n";
+  folder.write("bed.csv", bed);
+  text.replace(text.find("max: [1, 1, 1]"), 14, "max: [1, 2, 1]");
+  Scene s = parse(text);
+  read_linked_files(s, folder.path.string());
+  const double cosine = 1 / std::hypot(1, 0.1);
+  for (const double x : {0.01, 0.99})
+    for (const double y : {0.01, 1.0, 1.99})
+      for (const double over : {0.05, -0.04}) {
+        CAPTURE(x, y, over);
+        // Beyond the domain its heights are those of its edge.
+        CHECK(distance_at(s, {x, y, 0.4 + 0.1 * y + over}) == Approx(over * cosine).margin(5e-3));
+      }
+}
+
 TEST_CASE("heights that are no bed of the domain are refused, and name the place") {
   const TemporaryFolder folder;
   const auto said = [&](const std::string& csv, const std::string& more = "}") {
