@@ -101,6 +101,9 @@ struct FreeBodies {
       if (!has_free_bodies(c.scene)) return;
       const std::vector<BodyKind> kinds = body_kinds(c.scene, c.plan);
       c.put(field::body_kinds, kinds);
+      c.put(field::body_steps, std::vector<BodyStep>(kinds.size()));
+      const std::vector<PushSums> none(c.kept_rows(field::push_counts) * kLoadParts);
+      c.exec.to_device(none.data(), none.size(), c.data(field::push_counts));
       c.put(field::body_states, first_bodies(c.scene, c.plan, kinds));
       const Spots spots = contact_spots(
           c.scene, c.plan, std::size_t(c.rows_of(field::solid_spots)) - c.scene.obstacles.size());

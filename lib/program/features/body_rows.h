@@ -15,8 +15,9 @@ inline constexpr struct BodyKinds : Plain<BodyKind> {
 } body_kinds{{"body kinds", per_body, Life::run}};
 inline constexpr struct BodyStates : Plain<BodyState> {
 } body_states{{"body states", per_body, Life::state}};
+/// Of it, BodyStep::seen counts until the end of the update, where it becomes 0.
 inline constexpr struct BodySteps : Plain<BodyStep> {
-} body_steps{{"body steps", per_body, Life::update}};
+} body_steps{{"body steps", per_body, Life::run}};
 /// The points of all obstacles that may touch others, and which of them belong to each.
 inline constexpr struct ContactSpots : Plain<ContactSpot> {
 } contact_spots{{"contact points", per_contact_spot, Life::run}};

@@ -26,9 +26,10 @@ inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 /// The same of predictions, in time steps of second order: no share of it is taken over.
 inline constexpr struct ClampRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } clamp_sums{{"clamp sums", per_wall, Life::update}};
-/// Per wall: kLoadParts times PushSums, in scenes with free bodies.
+/// Per wall: kLoadParts times PushSums, in scenes with free bodies. Those of bodies are taken and
+/// cleared in each iteration, nothing reads those of others.
 inline constexpr struct PushCounts : Plain<PushSums, kLoadParts, std::int64_t> {
-} push_counts{{"push counts", per_wall, Life::update}};
+} push_counts{{"push counts", per_wall, Life::run}};
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
 } loads{{"loads", per_wall, Life::state}};
