@@ -59,12 +59,12 @@ inline bool carries_no_loads(const Scene& s) { return has_loads(s) && !is_second
 
 /// The needs of a pass that books loads; of one that books those of predictions.
 using BookNeeds =
-    Needs<If<has_loads, Adds<field::load_sums>>, If<has_free_bodies, Adds<field::push_counts>>,
-          If<has_pressure_gauges, Looks<field::patches>>>;
+    Needs<If<has_loads, Adds<field::load_sums>>, If<has_pressure_gauges, Looks<field::patches>>>;
 using StartBookNeeds =
     Needs<If<carries_loads, Adds<field::clamp_sums>>, If<carries_no_loads, Adds<field::load_sums>>,
-          If<has_free_bodies, Adds<field::push_counts>>,
           If<has_pressure_gauges, Looks<field::patches>>>;
+/// Of one that moves particles at free bodies, too.
+using PushNeeds = If<has_free_bodies, Adds<field::push_counts>>;
 
 /// pushes: those of field::push_counts, or null; sums: the rows of field::load_sums, or null;
 /// clamps: those of field::clamp_sums, or null; patch: those of field::patches.

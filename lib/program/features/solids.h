@@ -61,11 +61,11 @@ using ComeNearNeeds =
              Places<field::near_count>, Looks<field::solid_scene>>,
           If<has_obstacles, Looks<field::solids>>, If<has_maps, Looks<field::solid_maps>>>;
 /// The needs of a pass that moves particles: loads are booked, too.
-using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
+using MoveNeeds = Needs<ComeNearNeeds, BookNeeds, PushNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
-using StepNeeds =
-    Needs<ComeNearNeeds, StartBookNeeds, If<has_moving_obstacles, Looks<field::solids_before>>,
-          Adds<field::counts>, If<is_damped, Adds<field::dissipation>>>;
+using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds, PushNeeds,
+                        If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>,
+                        If<is_damped, Adds<field::dissipation>>>;
 using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
 
 struct NearSolids;
@@ -121,10 +121,10 @@ void each_then_near(const G& c, Make&& make) {
 struct FindNear {
   static constexpr PassText text{"near solids", "neighbors"};
   using Needs =
-      pbf::Needs<Reads<field::position>, Looks<field::bin_start>, Places<field::near_way_left>,
-                 Looks<field::near_row>, Places<field::near_row>, Looks<field::near_count>,
-                 Places<field::near_count>, SolidNeeds,
-                 If<has_solids_in_grid, Looks<field::near_half_cells>>>;
+      pbf::Needs<Reads<field::position>, Places<field::near_way_left>, Looks<field::near_row>,
+                 Places<field::near_row>, Looks<field::near_count>, Places<field::near_count>,
+                 SolidNeeds,
+                 If<has_solids_in_grid, Looks<field::near_half_cells>, Looks<field::bin_start>>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;

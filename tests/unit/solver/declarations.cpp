@@ -19,6 +19,9 @@ struct Scenario {
   std::vector<std::string> set;
   double fast = 0;  ///< m/s, of every other particle along x
 };
+constexpr const char* kFreeBox =
+    R"(obstacles=[{"name":"a","shape":"box","min":[0.03,0.03,0.5],"max":[0.08,0.08,0.6],)"
+    R"("free":{"density":300}}])";
 const std::vector<Scenario> kScenarios = {
     {"configs/minimal", {"fluid.spacing=0.05"}},
     {"configs/minimal", {"fluid.spacing=0.05", "solver.fused=false", "tensile={}"}},
@@ -66,6 +69,13 @@ const std::vector<Scenario> kScenarios = {
      20},
     {"tests/regression/frozen/motions", {"tank_motion=off"}},
     {"tests/regression/frozen/bodies", {}},
+    {"configs/stiff/column", {"fluid.spacing=0.025", kFreeBox}, 60},
+    {"configs/stiff/column",
+     {"fluid.spacing=0.025", "solver.substeps=2", "solver.iterations=1", kFreeBox},
+     60},
+    {"configs/stiff/column",
+     {"fluid.spacing=0.025", "solver.substeps=2", "solver.iterations=1", "time.order=1", kFreeBox},
+     60},
     {"tests/regression/frozen/bodies",
      {"time.order=1", "solver.substeps=3", "solver.iterations=1"}},
     {"configs/minimal", {"fluid.spacing=0.05", "time.order=2"}},
