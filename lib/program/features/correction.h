@@ -56,13 +56,13 @@ using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, 
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
-  using Needs =
-      pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>, DeltaNeeds>;
+  using Needs = pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>,
+                           DeltaNeeds, PushNeeds>;
   static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr, nullptr); }
 };
 
 /// Delta and the prediction of the next substep: the same arithmetic with one launch less. Not
-/// where a pass runs between the two, as with carried loads.
+/// where a pass runs between the two, as with carried loads and free bodies.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};

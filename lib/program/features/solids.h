@@ -61,7 +61,7 @@ using ComeNearNeeds =
              Places<field::near_count>, Looks<field::solid_scene>>,
           If<has_obstacles, Looks<field::solids>>, If<has_maps, Looks<field::solid_maps>>>;
 /// The needs of a pass that moves particles: loads are booked, too.
-using MoveNeeds = Needs<ComeNearNeeds, BookNeeds, PushNeeds>;
+using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
 using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds, PushNeeds,
                         If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>,
