@@ -34,6 +34,7 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
   };
   const std::string obstacles = "motion of obstacles: no obstacle has motion",
                     tank = "motion of the tank: no key tank_motion",
+                    free = "free bodies: no obstacle is free",
                     order = "velocities without the last push: time.order is 1",
                     calm = "passes of hyperviscosity, its array: time.order is 1",
                     iterations = "lambda and delta passes: solver.iterations is 0",
@@ -58,11 +59,11 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
               "passes of hyperviscosity, its array: solver.iterations is 0"});
   CHECK(left_out("", {"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}) ==
         Lines{tank, density, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
-  CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) == Lines{obstacles, tank, density, levels,
+  CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) == Lines{obstacles, tank, free, density, levels,
                                                              pressure, rows, slip, curl, loads,
                                                              gauges, order, calm});
   CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) ==
-        Lines{tank, density, levels, pressure, rows, xsph, slip, gauges, order, calm});
+        Lines{tank, free, density, levels, pressure, rows, xsph, slip, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,
                  {"solver.levels=on", "tensile.k=0.01", "solver.fused=false", "viscosity.xsph=0.1",
                   "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{rows, slip, order, calm});
