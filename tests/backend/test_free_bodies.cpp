@@ -248,21 +248,7 @@ TEST_CASE("free bodies: the same bits by any batches, threads and after a resume
   c = here(c);
   auto one = make(c);
   one->step(300, {.level = level});
-  Case other = c;
-  other.scene.threads = 1;
-  auto many = make(other);
-  for (const int n : {1, 7, 90, 2}) {
-    many->step(n, {.level = level});
-    many->diagnose();
-  }
-  auto fresh = make(c);
-  fresh->set_state(many->state());
-  CHECK(fresh->diagnose().bodies == many->diagnose().bodies);
-  fresh->step(100, {.level = level});
-  fresh->keep();
-  fresh->step(30, {.level = level});
-  fresh->set_state(fresh->state(pbf::StateOf::kept));  // back
-  fresh->step(100, {.level = level});
+  auto fresh = by_detours(c, level);
   CHECK(same_particles(one->state(), fresh->state()));
   CHECK(one->diagnose().bodies == fresh->diagnose().bodies);
   CHECK(one->diagnose().solid_work == fresh->diagnose().solid_work);

@@ -82,6 +82,27 @@ inline pbf::Snapshot places_of(pbf::Solver& s) {
   return s.download({}, pbf::ScalarType::f64).get();
 }
 
+/// A solver after 300 updates at this level: 100 in batches on one thread, 100 after a resume, 30
+/// that are taken back, and 100.
+inline std::unique_ptr<pbf::Solver> by_detours(const Case& c, int level) {
+  Case other = c;
+  other.scene.threads = 1;
+  auto many = make(other);
+  for (const int n : {1, 7, 90, 2}) {
+    many->step(n, {.level = level});
+    many->diagnose();
+  }
+  auto fresh = make(c);
+  fresh->set_state(many->state());
+  CHECK(fresh->diagnose().bodies == many->diagnose().bodies);
+  fresh->step(100, {.level = level});
+  fresh->keep();
+  fresh->step(30, {.level = level});
+  fresh->set_state(fresh->state(pbf::StateOf::kept));  // back
+  fresh->step(100, {.level = level});
+  return fresh;
+}
+
 /// h, how far behind a face rounding may leave what is held there: coordinates are below 50 h.
 inline double fine() { return backend_test::is_double() ? 1e-13 : 3e-5; }
 
