@@ -6,7 +6,7 @@
 
 #include "lib/program/body_mass.h"
 #include "lib/program/free_bodies.h"
-#include "lib/program/obstacles.h"
+#include "lib/program/obstacle_motion.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::program_module {
@@ -121,10 +121,7 @@ Spots contact_spots(const Scene& s, const Plan& plan, std::size_t more) {
     }
     row.count = int(out.all.size()) - row.first;
     if (o.free) row.body = body++;
-    const bool endless = !is_bounded(solid) || solid.shape.with([](const auto& shape) {
-      return goes_on(shape, Vec3<double>{1, 1, 1}) || goes_on(shape, Vec3<double>{-1, -1, -1});
-    });
-    row.radius = endless ? kEndless : size_of(solid);
+    row.radius = is_endless(solid) ? kEndless : size_of(solid);
   }
   for (std::size_t k = 0; k < more; ++k)
     out.of_solid.push_back({int(out.all.size()), 0, -1, kEndless});

@@ -22,7 +22,7 @@ BodyMass body_mass(const Scene& s, const Obstacle& o) {
   const BodyMoments m = moments_of(s, o);
   if (!o.free || !(m.volume > 0))
     throw Error(ExitCode::internal, "obstacle " + o.name + " has no mass");
-  const double density = o.free->density.value_or(o.free->mass.value_or(0) / m.volume);
+  const double density = o.free->density_in(m.volume);
   const Matrix3 rows = o.axes(), second = along_scene(rows, m.second);
   const double trace = second[0][0] + second[1][1] + second[2][2];
   BodyMass out;

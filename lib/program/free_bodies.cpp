@@ -35,15 +35,11 @@ AxisAngle axis_angle(const Matrix3& rows) {
   return {(1 / size) * v, 360 / std::numbers::pi * std::atan2(size, real)};
 }
 
-Double3 by_turn(const Matrix3& turn, const Double3& x) {
-  return {dot(turn[0], x), dot(turn[1], x), dot(turn[2], x)};
-}
-
 void begin_at(Obstacle& o, const BodyMotion& now) {
   const Double3 before = o.middle(), shift = now.middle - before;
   Matrix3 rows = o.axes();
-  for (Double3& row : rows) row = by_turn(now.turn, row);
-  const auto moved = [&](const Double3& x) { return now.middle + by_turn(now.turn, x - before); };
+  for (Double3& row : rows) row = times(now.turn, row);
+  const auto moved = [&](const Double3& x) { return now.middle + times(now.turn, x - before); };
   std::visit(
       [&](auto& keys) {
         if constexpr (requires { keys.turn_axis; }) {

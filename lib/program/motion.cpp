@@ -13,9 +13,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846, kRadians = kPi / 180;
 
-Double3 times(const Matrix3& m, const Double3& v) {
-  return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
-}
 Matrix3 product(const Matrix3& a, const Matrix3& b) {
   Matrix3 c{};
   for (std::size_t i = 0; i < 3; ++i)

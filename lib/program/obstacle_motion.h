@@ -47,15 +47,19 @@ inline SolidVelocity velocity_between(const Solid<double>& a, const Solid<double
   return {true, {go.x, go.y, go.z}, {spin.x, spin.y, spin.z}, {middle.x, middle.y, middle.z}};
 }
 
+/// Whether the body has no end, or goes on behind a wall of the domain.
+inline bool is_endless(const Solid<double>& o) {
+  const auto goes_on_somewhere = [](const auto& shape) {
+    return goes_on(shape, Vec3<double>{1, 1, 1}) || goes_on(shape, Vec3<double>{-1, -1, -1});
+  };
+  return o.shape.with(goes_on_somewhere) || !is_bounded(o);
+}
 /// h: largest distance of a point of the body from its center, at most twice the domain's diagonal.
 template <class Real>
 double radius_of(const Solid<double>& o, const Box<Real>& walls) {
   const double all =
       std::hypot(double(walls.extent.x), double(walls.extent.y), double(walls.extent.z));
-  const auto endless = [](const auto& shape) {
-    return goes_on(shape, Vec3<double>{1, 1, 1}) || goes_on(shape, Vec3<double>{-1, -1, -1});
-  };
-  return o.shape.with(endless) || !is_bounded(o) ? 2 * all : size_of(o);
+  return is_endless(o) ? 2 * all : size_of(o);
 }
 /// 2 sin(angle/2), for the angle by which a body turns from a to b.
 inline double chord(const Solid<double>& a, const Solid<double>& b) {

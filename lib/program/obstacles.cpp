@@ -84,8 +84,7 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s, double time,
   if (o.moves()) {
     const Pose pose = pose_of(s, o, time);
     center = pose.of(center);
-    for (Double3& axis : rows)
-      axis = {dot(pose.turn[0], axis), dot(pose.turn[1], axis), dot(pose.turn[2], axis)};
+    for (Double3& axis : rows) axis = times(pose.turn, axis);
   }
   if (s.plane()) center[1] = *s.plane();  // two dimensions ignore y
   const double h = s.h();

@@ -43,6 +43,8 @@ struct FreeBody {
   std::optional<BodyMotion> now{};
   bool operator==(const FreeBody&) const = default;
 
+  /// kg/m^3, of a body of so many m^3 (m^2 in two dimensions).
+  double density_in(double volume) const { return density ? *density : mass.value_or(0) / volume; }
   bool locks(const char* what) const {
     for (const std::string& one : lock)
       if (one == what) return true;

@@ -55,7 +55,7 @@ BodyMoments moments_of(const Scene& s, const Obstacle& o) {
 
 std::string light_text(const Scene& s, const Obstacle& o) {
   const double rest = s.fluid.rest_density, volume = moments_of(s, o).volume,
-               density = o.free->density ? *o.free->density : o.free->mass.value_or(0) / volume;
+               density = o.free->density_in(volume);
   const double least = kLeastDensity * rest;
   if (density >= least) return "";
   const std::string what = o.free->density

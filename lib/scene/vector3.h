@@ -33,6 +33,9 @@ inline Double3 turned(const Double3& v, const Double3& axis, double angle) {
 
 using Matrix3 = std::array<Double3, 3>;  ///< rows
 inline constexpr Matrix3 kUnit3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+inline Double3 times(const Matrix3& m, const Double3& v) {
+  return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
+}
 
 /// As unit(), for any length: scaled first, so that no square overflows.
 inline Double3 direction(const Double3& v) {

@@ -24,9 +24,9 @@ struct Capsule : Tube {
   BodyMoments moments(bool flat) const {
     const double r2 = radius * radius, l = length(), half = 0.5 * l;
     // The ends together are a ball (a disc) whose halves are moved apart by half each.
-    const double tube = (flat ? 2 * radius : kCirclePi * r2) * l,
-                 ends = (flat ? kCirclePi : 4.0 / 3 * kCirclePi * radius) * r2,
-                 middle = (flat ? 4 / (3 * kCirclePi) : 3.0 / 8) * radius,
+    const double tube = (flat ? 2 * radius : std::numbers::pi * r2) * l,
+                 ends = (flat ? std::numbers::pi : 4.0 / 3 * std::numbers::pi * radius) * r2,
+                 middle = (flat ? 4 / (3 * std::numbers::pi) : 3.0 / 8) * radius,
                  own = r2 / (flat ? 4 : 5);
     const double across = tube * r2 / (flat ? 3 : 4) + ends * own,
                  along = tube * l * l / 12 + ends * (own + half * half + 2 * half * middle);

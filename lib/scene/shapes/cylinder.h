@@ -23,7 +23,7 @@ struct Cylinder : Tube {
   /// In two dimensions a disc.
   BodyMoments moments(bool flat) const {
     const double r2 = radius * radius, l = length();
-    return symmetric_moments(kCirclePi * r2 * (flat ? 1 : l),
+    return symmetric_moments(std::numbers::pi * r2 * (flat ? 1 : l),
                              {r2 / 4, r2 / 4, flat ? 0 : l * l / 12});
   }
   /// Points of both rims and of the circle between them, and the middles of the ends.
@@ -32,7 +32,7 @@ struct Cylinder : Tube {
     const double half = 0.5 * length();
     std::vector<ContactPoint> all{{{0, 0, -half}}, {{0, 0, half}}};
     for (int k = 0; k < 16; ++k) {
-      const double angle = kCirclePi * k / 8, x = radius * std::cos(angle),
+      const double angle = std::numbers::pi * k / 8, x = radius * std::cos(angle),
                    y = radius * std::sin(angle);
       all.push_back({{x, y, -half}});
       all.push_back({{x, y, half}});

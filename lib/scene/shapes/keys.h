@@ -11,6 +11,7 @@
 // flat: in two dimensions, where check() has refused what they cannot describe.
 #pragma once
 
+#include <numbers>
 #include <tuple>
 
 #include "kernels/shapes/shapes.h"
@@ -22,8 +23,6 @@
 namespace pbf::scene_module {
 
 namespace obstacle_keys {
-
-inline constexpr double kCirclePi = 3.14159265358979323846;
 
 inline constexpr const char* kRadiusHelp =
     "Radius; of cylinders, capsules and discs at least the smoothing length.";

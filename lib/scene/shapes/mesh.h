@@ -87,10 +87,11 @@ struct Mesh : SurfaceFile {
   Matrix3 axes() const { return axes_turned(turn_axis, turn_angle); }
   double meters() const { return scale; }
   Body make(double h) const { return bare(scale, h); }
-  /// Zeros, or no places, until the surface is read.
+  /// Zeros, or no places, until the surface is read. Made once: every measurement asks for them.
   BodyMoments moments(bool) const {
     if (!surface) return {};
-    BodyMoments m = moments_of(surface->mesh(), surface->middle());
+    BodyMoments m = surface->derived<BodyMoments>(
+        {}, [&] { return moments_of(surface->mesh(), surface->middle()); });
     const double cube = scale * scale * scale;
     m.volume *= cube;
     m.center = scale * m.center;
@@ -99,7 +100,9 @@ struct Mesh : SurfaceFile {
   }
   std::vector<ContactPoint> contacts(bool) const {
     if (!surface) return {};
-    return contacts_of(surface->mesh(), surface->middle(), scale, kMeshContacts);
+    return surface->derived<std::vector<ContactPoint>>({scale}, [&] {
+      return contacts_of(surface->mesh(), surface->middle(), scale, kMeshContacts);
+    });
   }
 };
 

@@ -26,8 +26,8 @@ struct Sphere {
   Body make(double h) const { return {radius / h}; }
   BodyMoments moments(bool flat) const {
     const double r2 = radius * radius;
-    if (flat) return symmetric_moments(kCirclePi * r2, {r2 / 4, 0, r2 / 4});
-    return symmetric_moments(4.0 / 3 * kCirclePi * r2 * radius, {r2 / 5, r2 / 5, r2 / 5});
+    if (flat) return symmetric_moments(std::numbers::pi * r2, {r2 / 4, 0, r2 / 4});
+    return symmetric_moments(4.0 / 3 * std::numbers::pi * r2 * radius, {r2 / 5, r2 / 5, r2 / 5});
   }
   std::vector<ContactPoint> contacts(bool) const { return {{{}, radius}}; }
 };
