@@ -17,8 +17,8 @@ std::vector<BodyState> first_bodies(const Scene& scene, const Plan& plan,
 BodyMotion motion_of(const BodyKind& kind, const BodyState& state, const Scene& scene,
                      const Axes& axes);
 
-/// The points of solids that may touch others; of_solid: of obstacles, then of `more` solids without
-/// any.
+/// The points of solids that may touch others; of_solid: of obstacles, then of `more` solids
+/// without any.
 struct Spots {
   std::vector<ContactSpot> all;
   std::vector<SolidSpots> of_solid;
