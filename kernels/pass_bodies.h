@@ -51,11 +51,10 @@ struct BodyRows {
     s.added_inertia =
         max2(kAddedShare / kLeverUnits * double(pushed.lever), kAddedKept * s.added_inertia);
   }
-  PBF_HD BodyInverse inverse(int b) const { return {kind[b], BodyTurn(step[b].start.turn)}; }
   /// Moves body b from the start of the substep to its end.
   PBF_HD void move(int b) const {
     BodyState& s = state[b];
-    const Vec3<double> v = vec(s.velocity), rate = inverse(b).rate(vec(s.spin));
+    const Vec3<double> v = vec(s.velocity), rate = rate_by(step[b].inverse, vec(s.spin));
     s.at = moved(step[b].start, v, rate, dt);
     const BodyFrame<Real> frame = frame_at<Real>(kind[b], s.at);
     const int k = kind[b].solid;
@@ -95,11 +94,11 @@ struct StartBodiesPass {
     const BodyKind& kind = rows.kind[b];
     rows.collect(b);
     step.start = s.at;
-    const BodyInverse inverse = rows.inverse(b);
-    follow(kind, inverse, s, 1);
+    step.inverse = inverse_of(kind, BodyTurn(s.at.turn));
+    follow(kind, step.inverse, s, 1);
     put(s.velocity, without(kind.held, vec(s.velocity) + rows.dt * gravity));
     put(s.spin, without(kind.kept, vec(s.spin)));
-    contacts.find(b, step, inverse.rate(vec(s.spin)), rows.dt, kFollowRoom);
+    contacts.find(b, step, rate_by(step.inverse, vec(s.spin)), rows.dt, kFollowRoom);
   }
 };
 
@@ -116,7 +115,7 @@ struct PredictBodiesPass {
       const BodyState& s = rows.state[b];
       BodyStep& step = rows.step[b];
       const int k = rows.kind[b].solid;
-      const Vec3<double> v = vec(s.velocity), rate = rows.inverse(b).rate(vec(s.spin));
+      const Vec3<double> v = vec(s.velocity), rate = rate_by(step.inverse, vec(s.spin));
       put(step.velocity, v), put(step.rate, rate);
       PosedSolid<Real>& placed = rows.placed[k];
       rows.before[k] = placed.solid;
@@ -158,16 +157,16 @@ struct FollowFluidPass {
   PBF_HD void operator()(int) const {
     for (int b = 0; b < rows.bodies; ++b) {
       rows.collect(b);
-      const BodyInverse inverse = rows.inverse(b);
+      const BodyInverse& inverse = rows.step[b].inverse;
       const BodyState before = rows.state[b];
       BodyState& s = rows.state[b];
       follow(rows.kind[b], inverse, s, 1);
       const BodyStep& step = rows.step[b];
       const double room = kFollowRoom + way(b, vec(step.velocity), vec(step.rate));
-      const double far = away(b, inverse);
+      const double far = away(b);
       if (far > room) {
         s = before;
-        const double near = away(b, inverse);
+        const double near = away(b);
         const double part = near < room ? (room - near) / (far - near) : 0;
         follow(rows.kind[b], inverse, s, part);
       }
@@ -183,10 +182,11 @@ struct FollowFluidPass {
                       rows.kind[b].radius * square_root(dot(rate, rate)));
   }
   /// h: at most so far is a point of the body from where it was predicted to be.
-  PBF_HD double away(int b, const BodyInverse& inverse) const {
+  PBF_HD double away(int b) const {
     const BodyState& s = rows.state[b];
     const BodyStep& step = rows.step[b];
-    return way(b, vec(s.velocity) - vec(step.velocity), inverse.rate(vec(s.spin)) - vec(step.rate));
+    return way(b, vec(s.velocity) - vec(step.velocity),
+               rate_by(step.inverse, vec(s.spin)) - vec(step.rate));
   }
 };
 

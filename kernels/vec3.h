@@ -50,6 +50,10 @@ template <class R> PBF_HD R max2(R a, R b) { return a > b ? a : b; }
 template <class R> PBF_HD R min2(R a, R b) { return a < b ? a : b; }
 // clang-format on
 
+/// As an array of states and tables, whose types are the same on all backends.
+PBF_HD Vec3<double> vec(const double (&a)[3]) { return {a[0], a[1], a[2]}; }
+PBF_HD void put(double (&to)[3], Vec3<double> a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; }
+
 /// The components that a pair loop needs.
 template <int dimensions, class R>
 PBF_HD Vec<R, dimensions> point(const Vec4<R>& a) {

@@ -34,6 +34,7 @@ inline constexpr int kMostContacts = 32;  ///< of a body; of more, those with th
 /// A free body within a substep.
 struct BodyStep {
   BodyPose start;                         ///< at its start
+  BodyInverse inverse;                    ///< there
   double velocity[3] = {}, rate[3] = {};  ///< h/s, 1/s; as predicted
   LoadSums seen;                          ///< of the sums of this update
   int contacts = 0;
@@ -55,7 +56,6 @@ template <class Real>
 struct ContactScene {
   const BodyKind* body = nullptr;
   const BodyState* state = nullptr;
-  int bodies = 0;
   const ContactSpot* spot = nullptr;
   const SolidSpots* solid = nullptr;
   const PosedSolid<Real>* placed = nullptr;  ///< free bodies at the start of the substep
@@ -165,34 +165,30 @@ struct ContactScene {
 
 /// Gives bodies the impulses that keep them apart in a substep of length dt. Keeps their sums, so
 /// that it may be called again after velocities have changed.
-template <class State>
-PBF_HD void solve_contacts(const BodyKind* body, State* state, BodyStep* step, int bodies,
-                           double dt) {
-  const auto push = [&](int b, const BodyInverse& inverse, Vec3<double> arm, Vec3<double> impulse) {
-    put(state[b].velocity, vec(state[b].velocity) + inverse.velocity(impulse));
+PBF_HD_APART void solve_contacts(const BodyKind* body, BodyState* state, BodyStep* step, int bodies,
+                                 double dt) {
+  const auto push = [&](int b, Vec3<double> arm, Vec3<double> impulse) {
+    put(state[b].velocity, vec(state[b].velocity) + velocity_by(step[b].inverse, impulse));
     put(state[b].spin, vec(state[b].spin) + without(body[b].kept, cross(arm, impulse)));
   };
-  const auto speed_at = [&](int b, const BodyInverse& inverse, Vec3<double> arm) {
-    return vec(state[b].velocity) + cross(inverse.rate(vec(state[b].spin)), arm);
+  const auto speed_at = [&](int b, Vec3<double> arm) {
+    return vec(state[b].velocity) + cross(rate_by(step[b].inverse, vec(state[b].spin)), arm);
   };
-  const auto answer = [&](const BodyInverse& inverse, Vec3<double> arm, Vec3<double> n) {
+  const auto answer = [&](int b, Vec3<double> arm, Vec3<double> n) {
     const Vec3<double> turn = cross(arm, n);
-    return dot(n, inverse.velocity(n)) + dot(turn, inverse.rate(turn));
+    return dot(n, velocity_by(step[b].inverse, n)) + dot(turn, rate_by(step[b].inverse, turn));
   };
   for (int round = 0; round < kContactRounds; ++round) {
     bool changed = false;
     for (int b = 0; b < bodies; ++b) {
-      if (step[b].contacts == 0) continue;
-      const BodyInverse own(body[b], BodyTurn(step[b].start.turn));
       for (int i = 0; i < step[b].contacts; ++i) {
         Contact& c = step[b].contact[i];
         const Vec3<double> n = vec(c.normal), arm = vec(c.arm), other_arm = vec(c.other_arm);
-        double speed = dot(n, speed_at(b, own, arm)) - c.speed, ease = answer(own, arm, n);
+        double speed = dot(n, speed_at(b, arm)) - c.speed, ease = answer(b, arm, n);
         const int k = c.other;
         if (k >= 0) {
-          const BodyInverse other(body[k], BodyTurn(step[k].start.turn));
-          speed -= dot(n, speed_at(k, other, other_arm));
-          ease += answer(other, other_arm, n);
+          speed -= dot(n, speed_at(k, other_arm));
+          ease += answer(k, other_arm, n);
         }
         if (!(ease > 0)) continue;
         const double allowed =
@@ -202,9 +198,8 @@ PBF_HD void solve_contacts(const BodyKind* body, State* state, BodyStep* step, i
         if (more == 0) continue;
         changed = true;
         c.impulse = sum;
-        push(b, own, arm, more * n);
-        if (k >= 0)
-          push(k, BodyInverse(body[k], BodyTurn(step[k].start.turn)), other_arm, -more * n);
+        push(b, arm, more * n);
+        if (k >= 0) push(k, other_arm, -more * n);
       }
     }
     if (!changed) return;

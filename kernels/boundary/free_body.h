@@ -25,6 +25,13 @@ struct BodyKind {
   bool held[3] = {}, kept[3] = {};  ///< along and about which axes it does not move
 };
 
+/// How a body answers impulses: 1 over its mass and its inertia, without the motions that are kept
+/// from it.
+struct BodyInverse {
+  double mass[3] = {};        ///< per axis
+  double inertia[3][3] = {};  ///< 1/h^2, symmetric
+};
+
 /// A free body after a substep.
 struct BodyState {
   BodyPose at;
@@ -52,8 +59,6 @@ struct BodyState {
 
 namespace pbf::PBF_VARIANT {
 
-PBF_HD Vec3<double> vec(const double (&a)[3]) { return {a[0], a[1], a[2]}; }
-PBF_HD void put(double (&to)[3], Vec3<double> a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; }
 PBF_HD Vec3<double> times(const double (&m)[3][3], Vec3<double> a) {
   return {dot(vec(m[0]), a), dot(vec(m[1]), a), dot(vec(m[2]), a)};
 }
@@ -79,37 +84,36 @@ struct BodyTurn {
   PBF_HD Vec3<double> of(Vec3<double> a) const { return times(row, a); }
 };
 
-/// How a body answers impulses: 1 over its mass and its inertia, without the motions that are kept
-/// from it. Symmetric.
-struct BodyInverse {
-  double mass[3];        ///< per axis
-  double inertia[3][3];  ///< 1/h^2
-
-  PBF_HD BodyInverse(const BodyKind& b, const BodyTurn& turn) {
-    double in[3][3], half[3][3];
-    for (int i = 0; i < 3; ++i) {
-      mass[i] = b.held[i] ? 0 : 1 / b.mass;
-      put(half[i], times_transposed(b.inertia, vec(turn.row[i])));  // rows of R I: I is symmetric
-    }
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k)
-        in[i][k] = b.kept[i] || b.kept[k] ? (i == k ? 1 : 0) : dot(vec(half[i]), vec(turn.row[k]));
-    const Vec3<double> x = vec(in[0]), y = vec(in[1]), z = vec(in[2]);
-    const Vec3<double> a = cross(y, z), c = cross(z, x), d = cross(x, y);
-    const double scale = 1 / dot(x, a);
-    put(inertia[0], {scale * a.x, scale * c.x, scale * d.x});
-    put(inertia[1], {scale * a.y, scale * c.y, scale * d.y});
-    put(inertia[2], {scale * a.z, scale * c.z, scale * d.z});
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k)
-        if (b.kept[i] || b.kept[k]) inertia[i][k] = 0;
+/// At a turn from the pose in the scene.
+PBF_HD_APART BodyInverse inverse_of(const BodyKind& b, const BodyTurn& turn) {
+  BodyInverse out;
+  double in[3][3], half[3][3];
+  for (int i = 0; i < 3; ++i) {
+    out.mass[i] = b.held[i] ? 0 : 1 / b.mass;
+    put(half[i], times_transposed(b.inertia, vec(turn.row[i])));  // rows of R I: I is symmetric
   }
-  PBF_HD Vec3<double> velocity(Vec3<double> impulse) const {
-    return {mass[0] * impulse.x, mass[1] * impulse.y, mass[2] * impulse.z};
-  }
-  /// 1/s, about the center of mass.
-  PBF_HD Vec3<double> rate(Vec3<double> spin) const { return times(inertia, spin); }
-};
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      in[i][k] = b.kept[i] || b.kept[k] ? (i == k ? 1 : 0) : dot(vec(half[i]), vec(turn.row[k]));
+  const Vec3<double> x = vec(in[0]), y = vec(in[1]), z = vec(in[2]);
+  const Vec3<double> a = cross(y, z), c = cross(z, x), d = cross(x, y);
+  const double scale = 1 / dot(x, a);
+  put(out.inertia[0], {scale * a.x, scale * c.x, scale * d.x});
+  put(out.inertia[1], {scale * a.y, scale * c.y, scale * d.y});
+  put(out.inertia[2], {scale * a.z, scale * c.z, scale * d.z});
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (b.kept[i] || b.kept[k]) out.inertia[i][k] = 0;
+  return out;
+}
+/// h/s, of the center of mass.
+PBF_HD Vec3<double> velocity_by(const BodyInverse& of, Vec3<double> impulse) {
+  return {of.mass[0] * impulse.x, of.mass[1] * impulse.y, of.mass[2] * impulse.z};
+}
+/// 1/s, about the center of mass.
+PBF_HD Vec3<double> rate_by(const BodyInverse& of, Vec3<double> spin) {
+  return times(of.inertia, spin);
+}
 
 /// The pose after `dt` at these velocities. The angle is right to third order in a step, the axis
 /// to rounding.
@@ -158,10 +162,10 @@ PBF_HD void follow(const BodyKind& b, const BodyInverse& inverse, BodyState& s, 
   const Vec3<double> owed = without(b.held, vec(s.owed));
   const Vec3<double> turn = without(b.kept, vec(s.owed_spin));
   const double squared = dot(turn, turn);
-  const double ease = squared > 0 ? dot(turn, inverse.rate(turn)) / squared : 0;
+  const double ease = squared > 0 ? dot(turn, rate_by(inverse, turn)) / squared : 0;
   const double share = part * b.mass / (b.mass + s.added);
   const double turning = part / (1 + ease * s.added_inertia);
-  put(s.velocity, vec(s.velocity) + inverse.velocity(share * owed));
+  put(s.velocity, vec(s.velocity) + velocity_by(inverse, share * owed));
   put(s.spin, vec(s.spin) + turning * turn);
   put(s.owed, (1 - share) * owed);
   put(s.owed_spin, (1 - turning) * turn);
@@ -171,7 +175,7 @@ PBF_HD void follow(const BodyKind& b, const BodyInverse& inverse, BodyState& s, 
 PBF_HD double energy_of(const BodyKind& b, const BodyState& s, Vec3<double> gravity) {
   const BodyTurn turn(s.at.turn);
   const Vec3<double> v = vec(s.velocity), l = vec(s.spin);
-  return 0.5 * (b.mass * dot(v, v) + dot(l, BodyInverse(b, turn).rate(l))) -
+  return 0.5 * (b.mass * dot(v, v) + dot(l, rate_by(inverse_of(b, turn), l))) -
          b.mass * dot(gravity, vec(s.at.center));
 }
 

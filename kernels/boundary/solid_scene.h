@@ -105,17 +105,30 @@ PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
   return dot(way, way) <= most * most;
 }
 
-/// Calls f(k, solid_term) for the solids near x; that of a bore is negative. step: of a particle
-/// that they push.
+/// Calls f(k, solid_term) for the solids from number `first` to `last` that are near x. step: of a
+/// particle that they push.
 template <Smoothing S, class Real, class Step, class F>
-PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const Step& step, F&& f) {
-  for (int k = 0; k < s.solids + s.casings; ++k) {
-    if (!s.solid[k].bounds.has(x)) continue;
-    const SolidTerm<Real> term =
-        solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range);
-    const Real sign(k < s.solids ? 1 : -1);
-    f(k, SolidTerm<Real>{sign * term.share, sign * term.gradient});
-  }
+PBF_HD void for_solids_at(const SolidScene<Real>& s, int first, int last, Vec3<Real> x,
+                          const Step& step, F&& f) {
+  for (int k = first; k < last; ++k)
+    if (s.solid[k].bounds.has(x))
+      f(k, solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range));
+}
+/// What solids add at x; a bore takes away from its casing.
+template <Smoothing S, class Real, class Step>
+PBF_HD SolidTerm<Real> sum_of_solids(const SolidScene<Real>& s, Vec3<Real> x, const Step& step) {
+  SolidTerm<Real> o;
+  for_solids_at<S>(s, 0, s.solids, x, step, [&](int, const SolidTerm<Real>& one) {
+    o.share += one.share;
+    o.gradient = o.gradient + one.gradient;
+  });
+  if (s.casings > 0)
+    for_solids_at<S>(s, s.solids, s.solids + s.casings, x, step,
+                     [&](int, const SolidTerm<Real>& one) {
+                       o.share -= one.share;
+                       o.gradient = o.gradient - one.gradient;
+                     });
+  return o;
 }
 
 /// Solids are combined with the walls by inclusion and exclusion and do not overlap each other:
@@ -126,11 +139,7 @@ PBF_HD_APART BoundaryTerm<Real> solid_scene_term(const SolidScene<Real>& s, Vec3
                                                  const Step& step = {}) {
   BoundaryTerm<Real> w = s.walls.template term<S>(push_place(x, step));
   if (!s.walls.adds_density) return w;
-  SolidTerm<Real> o;
-  for_solids_at<S>(s, x, step, [&](int, const SolidTerm<Real>& one) {
-    o.share += one.share;
-    o.gradient = o.gradient + one.gradient;
-  });
+  const SolidTerm<Real> o = sum_of_solids<S>(s, x, step);
   // Bit for bit as with plain walls, so it does not matter which particles count as near.
   if (o.share == Real(0)) return w;
   const Real free = max2(Real(1) - o.share, Real(0)), left = s.walls.scale - w.density;
@@ -186,15 +195,15 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
 template <Smoothing S, class Real, class Step>
 PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, const Step& step,
                             Real factor) {
-  Real of_wall[6], share(0);
+  Real of_wall[6];
   if (!s.walls.adds_density) return;
   const Vec3<Real> place = push_place(x, step);
   const bool at_wall = s.loads.of_walls() && s.walls.template slopes<S>(place, of_wall);
-  for_solids_at<S>(s, x, step, [&](int, const SolidTerm<Real>& one) { share += one.share; });
+  const Real share = sum_of_solids<S>(s, x, step).share;
   if (share > Real(0) && share < Real(1)) {
     const Real left = s.walls.scale - s.walls.template term<S>(place).density;
-    for_solids_at<S>(s, x, step, [&](int k, const SolidTerm<Real>& one) {
-      if (k < s.obstacles()) book_on(s, k, i, x, (factor * left) * one.gradient, false);
+    for_solids_at<S>(s, 0, s.obstacles(), x, step, [&](int k, const SolidTerm<Real>& one) {
+      book_on(s, k, i, x, (factor * left) * one.gradient, false);
     });
   }
   const Real free = factor * max2(Real(1) - share, Real(0));

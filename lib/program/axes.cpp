@@ -44,6 +44,14 @@ Scene in_internal_axes(const Scene& scene, const Axes& axes) {
   return s;
 }
 
+Vec3<double> internal_place(const Scene& s, const Axes& axes, const Double3& at) {
+  const Double3 from = s.origin();
+  Double3 x{};
+  for (std::size_t a = 0; a < 3; ++a)
+    x[a] = s.dimensions == 2 && a == 1 ? 0 : (at[a] - from[a]) / s.h();
+  return along_internal(axes, x);
+}
+
 std::string axes_text(const Axes& axes) {
   std::string out;
   for (const int a : axes.of) out.append(out.empty() ? "" : ", ").append(kAxisNames[a]);

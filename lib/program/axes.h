@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/axes.h"
+#include "kernels/vec3.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::program_module {
@@ -15,6 +16,21 @@ Axes internal_axes(const Scene& scene);
 /// The scene with domain, faces and gravity along the internal axes. Bodies and obstacles are not
 /// converted.
 Scene in_internal_axes(const Scene& scene, const Axes& axes);
+
+/// A vector of the scene along the internal axes, and the reverse.
+inline Vec3<double> along_internal(const Axes& axes, const Double3& v) {
+  const auto of = [&](int k) { return v[std::size_t(axes.of[k])]; };
+  return {of(0), of(1), of(2)};
+}
+inline Double3 along_scene(const Axes& axes, const Vec3<double>& v) {
+  Double3 out{};
+  out[std::size_t(axes.of[0])] = v.x;
+  out[std::size_t(axes.of[1])] = v.y;
+  out[std::size_t(axes.of[2])] = v.z;
+  return out;
+}
+/// A place of the scene (m) in the internal frame, h; in two dimensions with y = 0.
+Vec3<double> internal_place(const Scene& scene, const Axes& axes, const Double3& at);
 
 /// "x, z, y": the axes of the scene that become internal x, y, z.
 std::string axes_text(const Axes& axes);

@@ -12,24 +12,6 @@
 namespace pbf::program_module {
 namespace {
 
-/// Vectors of the scene and of the internal frame, whose axes are those of the scene in another
-/// order. hand: -1 if a cross product changes its sign.
-struct Frames {
-  const Axes& axes;
-  double hand = axes.handedness();
-
-  Vec3<double> inside(const Double3& a) const {
-    return {a[std::size_t(axes.of[0])], a[std::size_t(axes.of[1])], a[std::size_t(axes.of[2])]};
-  }
-  Double3 outside(const Vec3<double>& a) const {
-    Double3 out{};
-    out[std::size_t(axes.of[0])] = a.x;
-    out[std::size_t(axes.of[1])] = a.y;
-    out[std::size_t(axes.of[2])] = a.z;
-    return out;
-  }
-};
-
 /// m: largest distance of a point of its section from Obstacle::middle(), in two dimensions.
 double flat_size(const Scene& s, const Obstacle& o) {
   double most = 0;
@@ -41,7 +23,6 @@ double flat_size(const Scene& s, const Obstacle& o) {
 
 std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
   std::vector<BodyKind> all;
-  const Frames frames{plan.axes};
   const double h = s.h();
   // A particle of two dimensions has the mass of the slab between the walls.
   const double unit = plan.mass / (s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : 1);
@@ -53,7 +34,7 @@ std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
     BodyKind b;
     b.solid = int(k);
     b.mass = mass.mass / unit;
-    const Vec3<double> middle = (1 / h) * frames.inside(o.middle() - mass.center);
+    const Vec3<double> middle = (1 / h) * along_internal(plan.axes, o.middle() - mass.center);
     put(b.middle, s.dimensions == 2 ? Vec3<double>{middle.x, 0, middle.z} : middle);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto row = std::size_t(plan.axes.of[i]);
@@ -75,33 +56,31 @@ std::vector<BodyKind> body_kinds(const Scene& s, const Plan& plan) {
 std::vector<BodyState> first_bodies(const Scene& s, const Plan& plan,
                                     const std::vector<BodyKind>& kinds) {
   std::vector<BodyState> all;
-  const Frames frames{plan.axes};
   const double h = s.h();
   for (const BodyKind& b : kinds) {
     const Obstacle& o = s.obstacles[std::size_t(b.solid)];
     BodyState now;
     put(now.at.center, plan.solids[std::size_t(b.solid)].center - vec(b.middle));
-    put(now.velocity, without(b.held, (1 / h) * frames.inside(o.free->velocity)));
-    const Vec3<double> rate =
-        (frames.hand * std::numbers::pi / 180) * frames.inside(o.free->angular);
+    put(now.velocity, without(b.held, (1 / h) * along_internal(plan.axes, o.free->velocity)));
+    const Vec3<double> rate = (plan.axes.handedness() * std::numbers::pi / 180) *
+                              along_internal(plan.axes, o.free->angular);
     put(now.spin, without(b.kept, times(b.inertia, without(b.kept, rate))));
-    now.energy = energy_of(b, now, (1 / h) * frames.inside(s.gravity));
+    now.energy = energy_of(b, now, (1 / h) * along_internal(plan.axes, s.gravity));
     all.push_back(now);
   }
   return all;
 }
 
 BodyMotion motion_of(const BodyKind& b, const BodyState& now, const Scene& s, const Axes& axes) {
-  const Frames frames{axes};
   const double h = s.h();
   const BodyTurn turn(now.at.turn);
   BodyMotion out;
-  out.middle = s.origin() + h * frames.outside(vec(now.at.center) + turn.of(vec(b.middle)));
+  out.middle = s.origin() + h * along_scene(axes, vec(now.at.center) + turn.of(vec(b.middle)));
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
       out.turn[std::size_t(axes.of[i])][std::size_t(axes.of[j])] = turn.row[i][j];
-  out.velocity = h * frames.outside(vec(now.velocity));
-  out.spin = frames.hand * frames.outside(BodyInverse(b, turn).rate(vec(now.spin)));
+  out.velocity = h * along_scene(axes, vec(now.velocity));
+  out.spin = axes.handedness() * along_scene(axes, rate_by(inverse_of(b, turn), vec(now.spin)));
   return out;
 }
 

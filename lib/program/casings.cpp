@@ -1,5 +1,6 @@
 // The casings of emitters as solids.
 #include "lib/program/emission.h"
+#include "lib/program/obstacles.h"
 
 namespace pbf::program_module {
 namespace {
@@ -29,7 +30,7 @@ Solid<double> body_of(const NozzlePlace& n, double depth, double wider, const Sc
 std::vector<Solid<double>> casings_of(const Scene& s) {
   std::vector<Solid<double>> all;
   for (const Emitter& e : s.emitters) {
-    const NozzlePlace n = nozzle_place(s, e, fastest_of(e));
+    const NozzlePlace n = nozzle_place(s, e);
     all.push_back(body_of(n, n.length(), n.wall, s));
   }
   return all;
@@ -38,16 +39,10 @@ std::vector<Solid<double>> casings_of(const Scene& s) {
 std::vector<Solid<double>> casings_and_bores(const Scene& s, const Axes& axes) {
   std::vector<Solid<double>> all = casings_of(s);
   for (const Emitter& e : s.emitters) {
-    const NozzlePlace n = nozzle_place(s, e, fastest_of(e));
+    const NozzlePlace n = nozzle_place(s, e);
     all.push_back(body_of(n, n.depth, kGap * s.fluid.spacing, s));
   }
-  for (Solid<double>& body : all) {
-    const Solid<double> along_scene = body;
-    const double center[3] = {body.center.x, body.center.y, body.center.z};
-    body.center = {center[axes.of[0]], center[axes.of[1]], center[axes.of[2]]};
-    for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) body.turn[r][k] = along_scene.turn[r][axes.of[k]];
-  }
+  turn_to_internal(axes, all);
   return all;
 }
 

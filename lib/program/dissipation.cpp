@@ -35,18 +35,21 @@ double dissipation_unit(const Scene& s, const Plan& plan) {
   return plan.mass * s.h() * s.h() * plan.dissipation_unit / kDissipationUnits;
 }
 
+double units_in(std::span<const DissipationSum> sums) {
+  __extension__ typedef __int128 Wide;
+  Wide all = 0;
+  for (const DissipationSum& s : sums)
+    all += Wide(s.whole) * (Wide(1) << DissipationSum::bits) + s.rest;
+  return double(all);
+}
+
 std::vector<double> dissipated(const std::vector<DissipationSum>& sums, const Scene& s,
                                const Plan& plan) {
-  __extension__ typedef __int128 Wide;
   const double unit = dissipation_unit(s, plan);
   const std::size_t causes = dissipations(s).size(), each = causes > 0 ? sums.size() / causes : 0;
   std::vector<double> out;
-  for (std::size_t k = 0; k < causes; ++k) {
-    Wide sum = 0;
-    for (std::size_t i = k * each; i < (k + 1) * each; ++i)
-      sum += Wide(sums[i].whole) * (Wide(1) << DissipationSum::bits) + sums[i].rest;
-    out.push_back(unit * double(sum));
-  }
+  for (std::size_t k = 0; k < causes; ++k)
+    out.push_back(unit * units_in(std::span(sums).subspan(k * each, each)));
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/dissipation.h"
@@ -23,7 +24,10 @@ inline bool is_damped(const Scene& s) { return dissipates(s, Dissipation::dampin
 /// Those that the scene has, in their order.
 std::vector<Dissipation> dissipations(const Scene& scene);
 
-/// J, the unit of the sums, for a particle.
+/// The number of units in sums together, which is exact up to its conversion.
+double units_in(std::span<const DissipationSum> sums);
+inline double units_in(const DissipationSum& sum) { return units_in(std::span(&sum, 1)); }
+/// J, the unit of the sums, for a particle; also of EmissionSum::energy.
 double dissipation_unit(const Scene& scene, const Plan& plan);
 /// J, what each of them has taken since the start. sums: the same number for each.
 std::vector<double> dissipated(const std::vector<DissipationSum>& sums, const Scene& scene,

@@ -136,7 +136,7 @@ EmissionPlan plan_emission(const Scene& s, std::int64_t bodies) {
   plan.first_id = bodies;
   double fastest = 0;
   for (const Emitter& e : s.emitters) {
-    PlannedNozzle n{nozzle_place(s, e, fastest_of(e)), SpeedCurve(s, e)};
+    PlannedNozzle n{nozzle_place(s, e), SpeedCurve(s, e)};
     n.columns = std::int64_t(n.place.column.size());
     n.area = double(n.columns) * s.cell_volume() / s.fluid.spacing;
     fastest = std::max(fastest, fastest_of(e));

@@ -72,7 +72,7 @@ std::int64_t particles_in_pipes(const Scene& scene);
 template <class Put>
 void for_each_in_pipes(const Scene& s, const Put& put) {
   for (const Emitter& e : s.emitters) {
-    const NozzlePlace p = nozzle_place(s, e, fastest_of(e));
+    const NozzlePlace p = nozzle_place(s, e);
     const Double3 v = SpeedCurve(s, e).speed(0) * p.normal;
     for (const Double3& x : p.held(s.fluid.spacing, held_layers(s))) put(x, v);
   }
@@ -104,8 +104,7 @@ EmitterStep emitter_at(const EmissionPlan& plan, std::size_t emitter, double tim
 /// Most particles at any time of the run, if no sink takes any.
 std::int64_t most_particles_of(const Scene& scene, const EmissionPlan& plan);
 
-/// J, per unit of EmissionSum::energy; kg m/s, of its momenta.
-double emission_energy_unit(const Scene& scene, const Plan& plan);
+/// kg m/s, per unit of EmissionSum::momentum.
 double emission_momentum_unit(const Scene& scene, const Plan& plan);
 /// The numbers of the columns of emitters and sinks (lib/program/column.h). time: s since the
 /// start.
@@ -114,7 +113,8 @@ std::vector<double> emission_readings(const std::vector<EmissionSum>& sums, cons
 /// J, what all of them have brought less what they have taken.
 double inflow_energy(const std::vector<EmissionSum>& sums, const Scene& scene, const Plan& plan);
 
-/// "at t = 0.5 s emitters[0] (jet) had no row for a particle; ", for an id without a row.
+/// "at t = 0.5 s emitters[0] (jet) had no room for a layer of 37 particles; ", for an id without a
+/// row.
 std::string no_row_text(const Scene& scene, const EmissionPlan& plan, std::int64_t id);
 /// Lines about emitters for `pbf plan`; empty without any.
 std::string emission_text(const Scene& scene, const Plan& plan);

@@ -7,18 +7,9 @@
 #include "lib/program/plan.h"
 
 namespace pbf::program_module {
-namespace {
-
-double value_of(const DissipationSum& s) {
-  __extension__ typedef __int128 Wide;
-  return double(Wide(s.whole) * (Wide(1) << DissipationSum::bits) + s.rest);
-}
-
-}  // namespace
 
 std::int64_t emission_rows(const Plan& plan) { return std::max(kEmissionRows, plan.substeps); }
 
-double emission_energy_unit(const Scene& s, const Plan& plan) { return dissipation_unit(s, plan); }
 double emission_momentum_unit(const Scene& s, const Plan& plan) {
   return plan.mass * s.h() / s.time.step / kDissipationUnits;
 }
@@ -26,17 +17,17 @@ double emission_momentum_unit(const Scene& s, const Plan& plan) {
 std::vector<double> emission_readings(const std::vector<EmissionSum>& sums, const Scene& s,
                                       const Plan& plan, double time) {
   std::vector<double> out;
-  const double energy = emission_energy_unit(s, plan), momentum = emission_momentum_unit(s, plan);
+  const double energy = dissipation_unit(s, plan), momentum = emission_momentum_unit(s, plan);
   for (std::size_t e = 0; e < s.emitters.size(); ++e) {
     const auto n = double(plan.emission.nozzles[e].columns * plan.emission.released(e, time));
-    out.insert(out.end(), {n, plan.mass * n, energy * value_of(sums[e].energy)});
+    out.insert(out.end(), {n, plan.mass * n, energy * units_in(sums[e].energy)});
   }
   for (std::size_t k = 0; k < s.sinks.size(); ++k) {
     const EmissionSum& sum = sums[s.emitters.size() + k];
     const auto n = double(sum.particles);
-    double p[3];
-    for (std::size_t a = 0; a < 3; ++a) p[plan.axes.of[a]] = momentum * value_of(sum.momentum[a]);
-    out.insert(out.end(), {n, plan.mass * n, p[0], p[1], p[2], energy * value_of(sum.energy)});
+    const auto along = [&](int a) { return momentum * units_in(sum.momentum[a]); };
+    const Double3 p = along_scene(plan.axes, {along(0), along(1), along(2)});
+    out.insert(out.end(), {n, plan.mass * n, p[0], p[1], p[2], energy * units_in(sum.energy)});
   }
   return out;
 }
@@ -44,8 +35,8 @@ std::vector<double> emission_readings(const std::vector<EmissionSum>& sums, cons
 double inflow_energy(const std::vector<EmissionSum>& sums, const Scene& s, const Plan& plan) {
   double sum = 0;
   for (std::size_t k = 0; k < sums.size(); ++k)
-    sum += (k < s.emitters.size() ? 1 : -1) * value_of(sums[k].energy);
-  return emission_energy_unit(s, plan) * sum;
+    sum += (k < s.emitters.size() ? 1 : -1) * units_in(sums[k].energy);
+  return dissipation_unit(s, plan) * sum;
 }
 
 std::string emission_text(const Scene& s, const Plan& plan) {

@@ -14,23 +14,15 @@
 namespace pbf::program_module {
 namespace {
 
-/// What gauges are made from besides their keys. Places and directions are converted from SI units
-/// and the scene's axes to the internal frame.
+/// What gauges are made from besides their keys.
 struct Frame {
   const Scene& s;
   const Plan& plan;
   int first = 0;  ///< number of the gauge's first sum among those of its tally
 
-  void place(const Double3& x, double (&to)[3]) const {
-    const Double3 o = s.origin();
-    for (int k = 0; k < 3; ++k) {
-      const auto a = std::size_t(plan.axes.of[k]);
-      to[k] = s.dimensions == 2 && a == 1 ? 0 : (x[a] - o[a]) / s.h();
-    }
-  }
-  void direction(const Double3& v, double (&to)[3]) const {
-    for (int k = 0; k < 3; ++k) to[k] = v[std::size_t(plan.axes.of[k])];
-  }
+  /// In the internal frame.
+  void place(const Double3& x, double (&to)[3]) const { put(to, internal_place(s, plan.axes, x)); }
+  void direction(const Double3& v, double (&to)[3]) const { put(to, along_internal(plan.axes, v)); }
   /// Bound on the number of particles within h of a point: those in a cube of edge 2 h.
   double particles_around() const { return std::pow(2 * s.h() / s.fluid.spacing, s.dimensions); }
 };
@@ -103,10 +95,12 @@ PlannedGauge<ProbeTally> planned(const gauge_keys::Velocity& g, const Frame& fra
   const double unit = frame.s.h() / frame.s.time.step;  // m/s, of h per update
   gauge.grains = {{unit * frame.particles_around() / double(kProbeUnits)}};
   gauge.finish = [unit, axes = frame.plan.axes](const ProbeSums* s) -> std::vector<double> {
-    std::vector<double> v(3, std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t k = 0; k < 3 && double(s->weight) / double(kProbeUnits) > 1e-6; ++k)
-      v[std::size_t(axes.of[k])] = unit * double(s->way[k]) / double(s->weight);
-    return v;
+    const double weight = double(s->weight);
+    if (!(weight / double(kProbeUnits) > 1e-6))
+      return std::vector<double>(3, std::numeric_limits<double>::quiet_NaN());
+    const auto along = [&](int k) { return unit * double(s->way[k]) / weight; };
+    const Double3 v = along_scene(axes, {along(0), along(1), along(2)});
+    return {v.begin(), v.end()};
   };
   return gauge;
 }

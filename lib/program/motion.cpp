@@ -127,22 +127,17 @@ FrameStep<double> frame_step(const Scene& s, const Axes& axes, double time, doub
       push = times(turn_about(*m.axis, -behind.angle), push);
     }
   }
-  const double h = s.h();
-  const Double3 from = s.origin();
-  double at[3], by[3];
   for (int k = 0; k < 3; ++k) {
     const auto i = std::size_t(axes.of[k]);
-    at[k] = (pivot[i] - from[i]) / h;
-    by[k] = push[i] / h;
     for (int l = 0; l < 3; ++l) {
       const auto j = std::size_t(axes.of[l]);
       out.turn[k][l] = turn[i][j];
       out.pull[k][l] = pull[i][j];
     }
   }
-  if (s.plane()) at[1] = 0;  // two dimensions ignore y
-  out.pivot = {at[0], at[1], at[2]};
-  out.push = {by[0], by[1], by[2]};
+  for (double& x : push) x /= s.h();
+  out.pivot = internal_place(s, axes, pivot);
+  out.push = along_internal(axes, push);
   return out;
 }
 

@@ -132,14 +132,18 @@ void make_maps(const Scene& scene, const ObstacleProgress& progress) {
 
 std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes, double time) {
   std::vector<Solid<double>> all = solids_of(scene, time);
-  for (Solid<double>& s : all) {
-    const Solid<double> along_scene = s;
-    const double center[3] = {s.center.x, s.center.y, s.center.z};
-    s.center = {center[axes.of[0]], center[axes.of[1]], center[axes.of[2]]};
-    for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) s.turn[r][k] = along_scene.turn[r][axes.of[k]];
-  }
+  turn_to_internal(axes, all);
   return all;
+}
+
+void turn_to_internal(const Axes& axes, std::vector<Solid<double>>& solids) {
+  for (Solid<double>& s : solids) {
+    s.center = along_internal(axes, {s.center.x, s.center.y, s.center.z});
+    for (auto& row : s.turn) {
+      const Vec3<double> to = along_internal(axes, {row[0], row[1], row[2]});
+      row[0] = to.x, row[1] = to.y, row[2] = to.z;
+    }
+  }
 }
 
 }  // namespace pbf::program_module

@@ -16,6 +16,8 @@ namespace pbf::program_module {
 std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes, double time = 0);
 /// The same along the scene's axes.
 std::vector<Solid<double>> solids_of(const Scene& scene, double time = 0);
+/// From the scene's axes to the internal ones.
+void turn_to_internal(const Axes& axes, std::vector<Solid<double>>& solids);
 
 /// The part of a map that is made, 0 to 1; called at times by one thread.
 using MapProgress = std::function<void(double done)>;

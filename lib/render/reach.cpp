@@ -38,6 +38,14 @@ bool leaks(const Scene& scene, const Double3& up) {
   return false;
 }
 
+/// Whether a free body does not move along the axis that is nearest to `up`.
+bool is_held_along(const FreeBody& body, const Double3& up) {
+  std::size_t most = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::fabs(up[k]) > std::fabs(up[most])) most = k;
+  return body.locks(kLockNames[most]);
+}
+
 /// m along `up`, of the highest place of a solid; of a plane nothing.
 double top_of(const Solid<double>& s, const Double3& up) {
   const Vec3<double> way{up[0], up[1], up[2]};
@@ -248,7 +256,7 @@ Reach reach_of(const Scene& scene, const Double3& up, std::int64_t particles) {
   // A body that falls throws up fluid as a parcel does.
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     const auto& body = scene.obstacles[k].free;
-    if (!body || body->locks("z")) continue;
+    if (!body || is_held_along(*body, up)) continue;
     const Vec3<double>& c = solids[k].center;
     const double fall = dot(Double3{c.x, c.y, c.z}, up) - rest.surface;
     fastest = std::max(

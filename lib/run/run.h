@@ -174,10 +174,11 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
                         const std::vector<StageTime>& stages);
 
 /// One JSON object on one line: measurements, wall-clock seconds, frames that are safely on disk,
-/// seconds per stage. `columns`: of the run's readings.
+/// seconds per stage. `columns`: of the run's readings; `poses`: pose_readings().
 std::string measure_json(const Diagnostics& measures, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages,
-                         const std::vector<ReadingColumn>& columns);
+                         const std::vector<ReadingColumn>& columns,
+                         const std::vector<double>& poses);
 
 /// Percentage of `part` in `whole`; 0 if `whole` is 0.
 inline double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }

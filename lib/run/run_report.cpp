@@ -254,7 +254,8 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
 
 std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages,
-                         const std::vector<ReadingColumn>& columns) {
+                         const std::vector<ReadingColumn>& columns,
+                         const std::vector<double>& poses) {
   Json out{{"update", m.update},
            {"time", short_number(m.time)},
            {"wall", short_number(wall)},
@@ -267,11 +268,13 @@ std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
     else
       out[name] = value;
   }
-  for_each_number(columns, Series::measures,
-                  [&](const ReadingColumn& c, int component, std::size_t k) {
-                    out[c.kind + std::string("s")][c.of][number_name(c, component)] =
-                        short_number(m.readings[k]);
-                  });
+  const auto add = [&](Series series, const std::vector<double>& readings) {
+    for_each_number(columns, series, [&](const ReadingColumn& c, int component, std::size_t k) {
+      out[c.kind + std::string("s")][c.of][number_name(c, component)] = short_number(readings[k]);
+    });
+  };
+  add(Series::measures, m.readings);
+  add(Series::poses, poses);
   Json& times = out["stages"] = Json::object();
   for (const StageTime& s : stages) times[s.name] = short_number(s.seconds);
   return json_text(out);

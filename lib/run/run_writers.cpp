@@ -32,16 +32,16 @@ void LogRows::take(Diagnostics& m, double dt) {
   }
   const std::vector<StageTime> since = stages_since_last_row();
   const auto& writer = run_.writer;
+  const std::vector<double> poses = pose_readings(run_.scene, m.time, m.bodies);
   run_.clock.begin();
   if (writer) {
-    writer->log(
-        {m, run_.scene.solver.iterations, dt, since, pose_readings(run_.scene, m.time, m.bodies)});
+    writer->log({m, run_.scene.solver.iterations, dt, since, poses});
     run_.clock.mark("write");
   }
   if (!run_.json) return;
   const std::int64_t frames = writer ? writer->frames_written() : 0;
   const std::string line =
-      measure_json(m, run_.control.wall.seconds(), frames, since, run_.plan.columns) + "\n";
+      measure_json(m, run_.control.wall.seconds(), frames, since, run_.plan.columns, poses) + "\n";
   // A closed pipe is no error, as for stdout.
   if ((std::fwrite(line.data(), 1, line.size(), run_.json) != line.size() ||
        std::fflush(run_.json) != 0) &&

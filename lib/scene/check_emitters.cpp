@@ -108,7 +108,7 @@ class EmitterChecker : public SceneRules {
 
   void check_pipe(const Emitter& e, std::vector<Pipe>& pipes) {
     const double d = s_.fluid.spacing, fastest = fastest_of(e);
-    NozzlePlace p = nozzle_place(s_, e, fastest);
+    NozzlePlace p = nozzle_place(s_, e);
     if (p.column.empty()) {
       const auto small = [&](const auto& member, double size) {
         add(member,
@@ -193,7 +193,6 @@ class EmitterChecker : public SceneRules {
   std::string entry_of(const Emitter& e) const { return block_of(name(e.center)); }
   std::size_t wrong_ = 0;  ///< problems with keys
 
-  static double rounded(double x) { return std::stod(fmt::format("{:.4g}", x)); }
   static std::string text(const Double3& p) {
     return fmt::format("({:.4g}, {:.4g}, {:.4g})", p[0], p[1], p[2]);
   }

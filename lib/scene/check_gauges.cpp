@@ -140,7 +140,6 @@ class GaugeChecker : public SceneRules {
   static std::string count(const std::vector<double>& at) {
     return std::to_string(at.size()) + (at.size() == 1 ? " number" : " numbers");
   }
-  static double rounded(double x) { return std::stod(fmt::format("{:.4g}", x)); }
   static std::string text(const Double3& p) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]);
   }

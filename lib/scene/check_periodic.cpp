@@ -58,7 +58,7 @@ class PeriodicChecker : public SceneRules {
       add(s_.domain.periodic,
           "{}: the domain is {} m long along it, and a particle would see images of its own "
           "neighbors; give at least 3 smoothing lengths, {} m, or lower fluid.spacing",
-          kAxes[a], rounded(length), rounded(least));
+          kAxes[a], rounded(length, 6), rounded(least, 6));
   }
 
   /// Gravity along a periodic axis drives a flow, which must be held by something.
@@ -100,7 +100,8 @@ class PeriodicChecker : public SceneRules {
       add(o.name,
           "reaches {0} = {1}, and obstacles have no images beyond periodic faces: leave 1.5 "
           "smoothing lengths, {0} from {2} to {3}; the flow is the same if all is moved along {0}",
-          kAxes[a], rounded(low < from - 1e-9 * clear ? low : high), rounded(from), rounded(to));
+          kAxes[a], rounded(low < from - 1e-9 * clear ? low : high, 6), rounded(from, 6),
+          rounded(to, 6));
   }
   bool keeps_direction(const Motion& m) const {
     if (!good(m.kind)) return true;
@@ -108,7 +109,6 @@ class PeriodicChecker : public SceneRules {
     return m.kind == MotionKind::velocity && m.angular == Double3{};
   }
   static constexpr double kClear = 1.5;  ///< h
-  static double rounded(double x) { return std::stod(fmt::format("{:.6g}", x)); }
 
   void check(const gauge_keys::Flow& g, const Gauge&) {
     add(g.center,
@@ -136,7 +136,7 @@ class PeriodicChecker : public SceneRules {
       add(at,
           "{0} is {1}, and a gauge does not see through a periodic face: give {0} from {2} to {3}; "
           "the flow is the same if all is moved along {0}",
-          kAxes[a], x, rounded(low), rounded(high));
+          kAxes[a], x, rounded(low, 6), rounded(high, 6));
   }
 };
 

@@ -29,7 +29,7 @@ double fastest_emitter(const Scene& s, double from, double to) {
   return most;
 }
 
-NozzlePlace nozzle_place(const Scene& s, const Emitter& e, double fastest) {
+NozzlePlace nozzle_place(const Scene& s, const Emitter& e) {
   NozzlePlace p;
   const bool flat = s.dimensions == 2;
   const double d = s.fluid.spacing;
@@ -47,7 +47,7 @@ NozzlePlace nozzle_place(const Scene& s, const Emitter& e, double fastest) {
     p.half[k] = disc ? e.radius : k < e.size.size() ? e.size[k] / 2 : 0;
   if (flat) p.half[1] = s.domain.max[1] - s.domain.min[1];  // all of the slab
   // A layer begins at the start of the update in which the one before leaves the first places.
-  p.depth = (held_layers(s) + 0.5) * d + fastest * s.time.step;
+  p.depth = (held_layers(s) + 0.5) * d + fastest_of(e) * s.time.step;
   p.wall = s.h() - 0.5 * d;
   const auto add = [&](double a, double b) {
     p.column.push_back(p.center + a * p.side[0] + b * p.side[1]);

@@ -36,9 +36,8 @@ struct NozzlePlace {
   /// Where the first layers wait, m.
   std::vector<Double3> held(double spacing, int layers) const;
 };
-/// In two dimensions the opening is a line in the plane of the particles. fastest: m/s, the highest
-/// speed of the emitter.
-NozzlePlace nozzle_place(const Scene& scene, const Emitter& emitter, double fastest);
+/// In two dimensions the opening is a line in the plane of the particles.
+NozzlePlace nozzle_place(const Scene& scene, const Emitter& emitter);
 
 /// m/s, the highest speed between start and end. 0 if the file was not read.
 double fastest_of(const Emitter& emitter);

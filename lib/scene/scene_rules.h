@@ -34,6 +34,10 @@ class SceneRules {
         problems_(problems) {}
 
  protected:
+  /// For texts: to so many digits.
+  static double rounded(double x, int digits = 4) {
+    return std::stod(fmt::format("{:.{}g}", x, digits));
+  }
   const std::string& name(const auto& member) const { return names_.at(&member); }
   template <class... Kind>
   const std::string& name(const std::variant<Kind...>& kind) const {

@@ -28,6 +28,7 @@ std::string sample() {
   {
     RunInfo info;
     info.particles = 5;
+    info.bodies = {"float", "raft"};
     RunWriter writer(path, info, true);
     for (int k = 0; k < 3; ++k) {
       LogRow row;
@@ -36,6 +37,7 @@ std::string sample() {
       Snapshot s{k, 0.1 * k, 5, {}};
       s.fields = {field("position", ScalarType::f32, 3, 5), field("density", ScalarType::f32, 1, 5),
                   field("id", ScalarType::i32, 1, 5)};
+      s.bodies.resize(info.bodies.size());
       writer.write(std::move(s));
     }
     writer.finish({"finished"});

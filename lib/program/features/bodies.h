@@ -49,7 +49,7 @@ struct MoveBodies {
     using Real = typename G::Real;
     const BodyRows<Real> rows = body_rows(c);
     ContactScene<Real> contacts;
-    contacts.body = rows.kind, contacts.state = rows.state, contacts.bodies = rows.bodies;
+    contacts.body = rows.kind, contacts.state = rows.state;
     contacts.spot = c[field::contact_spots], contacts.solid = c[field::solid_spots];
     contacts.placed = rows.placed, contacts.before = rows.before;
     contacts.velocity = rows.velocity;

@@ -66,19 +66,16 @@ struct InFrame {
   const Plan& plan;
 
   template <class Real>
+  static Vec3<Real> rounded(const Vec3<double>& v) {
+    return {Real(v.x), Real(v.y), Real(v.z)};
+  }
+  template <class Real>
   Vec3<Real> place(const Double3& x) const {
-    const Double3 o = s.origin();
-    double to[3];
-    for (int k = 0; k < 3; ++k) {
-      const auto a = std::size_t(plan.axes.of[k]);
-      to[k] = s.dimensions == 2 && a == 1 ? 0 : (x[a] - o[a]) / s.h();
-    }
-    return {Real(to[0]), Real(to[1]), Real(to[2])};
+    return rounded<Real>(internal_place(s, plan.axes, x));
   }
   template <class Real>
   Vec3<Real> along(const Double3& v) const {
-    const auto& of = plan.axes.of;
-    return {Real(v[std::size_t(of[0])]), Real(v[std::size_t(of[1])]), Real(v[std::size_t(of[2])])};
+    return rounded<Real>(along_internal(plan.axes, v));
   }
   template <class Real>
   Nozzle<Real> nozzle(const PlannedNozzle& of, int first_column) const {
@@ -196,20 +193,19 @@ struct FindPipeRows {
   }
 };
 
-template <class G>
-void hold_rows(const G& c) {
-  c.listed(c[field::pipe_count],
-           HoldPass<typename G::Real>{c.p, pipes_of<false>(c, c[field::emission_sums].sums()),
-                                      c[field::pipe_row], c[field::position], c[field::velocity],
-                                      c[field::id]});
-}
 /// After each correction.
 struct Hold {
   static constexpr PassText text{"hold", "delta"};
   using Needs = pbf::Needs<PipeNeeds, Updates<field::position, W::inverse_density>,
                            Updates<field::velocity>, Reads<field::id>, Looks<field::pipe_row>,
                            Looks<field::pipe_count>, Adds<field::emission_sums>>;
-  static void launch(const auto& c) { hold_rows(c); }
+  template <class G>
+  static void launch(const G& c) {
+    c.listed(c[field::pipe_count],
+             HoldPass<typename G::Real>{c.p, pipes_of<false>(c, c[field::emission_sums].sums()),
+                                        c[field::pipe_row], c[field::position], c[field::velocity],
+                                        c[field::id]});
+  }
 };
 
 struct Emission {

@@ -1,5 +1,5 @@
 # Seeded mistakes: one textual change each to surfaces from files, emitters and sinks, viscosity and
-# friction. A test of the quick part must fail: one that does not have the tag [slow].
+# friction, and free bodies. A test of the quick part must fail: one that does not have the tag [slow].
 # seeded_defect(NAME TEST FILE OLD NEW): OLD stands in FILE exactly once; TEST is the source whose
 # tests are run.
 
@@ -99,3 +99,45 @@ seeded_defect(friction_energy_of_domain tests/backend/test_dissipation.cpp kerne
 seeded_defect(friction_in_first_sweep_alone tests/backend/test_viscosity.cpp
   lib/program/features/viscosity.h
   [[if (has_friction(s)) b.after(Friction());]] [[if (k == 0 && has_friction(s)) b.after(Friction());]])
+
+# free bodies
+seeded_defect(body_turns_backwards tests/backend/test_free_bodies.cpp kernels/boundary/free_body.h
+  [[const Vec3<double> next = q + half *]] [[const Vec3<double> next = q - half *]])
+seeded_defect(body_inertia_does_not_turn tests/backend/test_free_bodies.cpp
+  kernels/boundary/free_body.h
+  [[dot(vec(half[i]), vec(turn.row[k]));]] [[b.inertia[i][k];]])
+seeded_defect(body_owed_is_lost tests/backend/test_free_bodies.cpp kernels/boundary/free_body.h
+  [[put(s.owed, (1 - share) * owed);]] [[put(s.owed, 0.0 * owed);]])
+seeded_defect(body_moment_about_corner tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
+  [[(vec(moment) - cross(vec(s.at.center), vec(way)))]] [[vec(moment)]])
+seeded_defect(body_sums_counted_twice tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
+  [[now.seen = all;]] [[]])
+seeded_defect(body_sums_seen_too_long tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
+  [[rows.step[b].seen = {};]] [[]])
+seeded_defect(body_lock_of_turns_missing tests/backend/test_free_bodies.cpp lib/program/body_kinds.cpp
+  [[o.free->locks(kLockNames[3 + row]);]] [[false;]])
+seeded_defect(body_gravity_of_half_a_step tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
+  [[vec(s.velocity) + rows.dt * gravity]] [[vec(s.velocity) + 0.5 * rows.dt * gravity]])
+seeded_defect(body_solid_left_behind tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
+  [[static_cast<BodyFrame<Real>&>(placed[k].solid) = frame;]] [[]])
+seeded_defect(contact_without_radius tests/backend/test_free_bodies.cpp
+  kernels/boundary/body_contact.h
+  [[: at[wall / 2]) - radius;]] [[: at[wall / 2]);]])
+seeded_defect(contact_of_upper_walls_alone tests/backend/test_free_bodies.cpp
+  kernels/boundary/body_contact.h
+  [[c.normal[wall / 2] = wall % 2 ? -1 : 1;]] [[c.normal[wall / 2] = -1;]])
+seeded_defect(contact_pushes_one_of_two tests/backend/test_free_bodies.cpp
+  kernels/boundary/body_contact.h
+  [[if (k >= 0) push(k, other_arm, -more * n);]] [[]])
+seeded_defect(contact_pulls tests/backend/test_free_bodies.cpp kernels/boundary/body_contact.h
+  [[max2(c.impulse + (allowed - speed) / ease, 0.0)]] [[(c.impulse + (allowed - speed) / ease)]])
+seeded_defect(contact_without_turn tests/backend/test_free_bodies.cpp
+  kernels/boundary/body_contact.h
+  [[without(body[b].kept, cross(arm, impulse))]] [[without(body[b].kept, 0.0 * cross(arm, impulse))]])
+seeded_defect(body_mass_center_of_shape tests/unit/program/body_mass.cpp lib/program/body_mass.cpp
+  [[out.center + m.center[k] * rows[k]]] [[out.center + 0 * m.center[k] * rows[k]]])
+seeded_defect(body_inertia_not_along_scene tests/unit/program/body_mass.cpp
+  lib/program/body_mass.cpp
+  [[rows[i][a] * in_body[i][j] * rows[j][b]]] [[rows[a][i] * in_body[i][j] * rows[b][j]]])
+seeded_defect(body_inertia_without_trace tests/unit/program/body_mass.cpp lib/program/body_mass.cpp
+  [[(i == j ? trace : 0) - second]] [[(i == j ? trace : 1) - second]])

@@ -104,3 +104,19 @@ TEST_CASE("the frame holds a free body at its start, and what its fall throws up
   held.obstacles[0].free->lock = {"z"};
   CHECK(reach_of(held, up, 8000).speed < 0.5 * high.speed);
 }
+
+TEST_CASE("whether a free body can fall is a question of the axis that is up", "[render]") {
+  Scene s = pool_with_cube(1);
+  s.domain.max = {3, 1, 2};
+  s.gravity = {-9.81, 0, 0};
+  s.bodies[0].max = {0.5, 1, 2};
+  s.obstacles = {box_obstacle({2.3, 0.3, 0.8}, {2.7, 0.7, 1.2}, {0, 0, 1}, 0)};
+  FreeBody& cube = s.obstacles[0].free.emplace();
+  cube.density = 500;
+  const auto speed = [&](std::vector<std::string> lock) {
+    cube.lock = std::move(lock);
+    return reach_of(s, {1, 0, 0}, 8000).speed;
+  };
+  CHECK(speed({"z"}) == speed({}));
+  CHECK(speed({"x"}) < 0.5 * speed({}));
+}

@@ -50,7 +50,7 @@ TEST_CASE("numbers of a line of JSON have nine digits, whatever came out of sums
   m.time = 0.1 + 0.2;
   m.kinetic_energy = 1.0 / 3;
   m.speed_max = std::numeric_limits<double>::quiet_NaN();
-  const std::string json = measure_json(m, 2.0 / 3e5, 2, {{"lambda", 0.1 * 3, 1}}, {});
+  const std::string json = measure_json(m, 2.0 / 3e5, 2, {{"lambda", 0.1 * 3, 1}}, {}, {});
   for (const char* part :
        {"\"time\":0.3,", "\"kinetic_energy\":0.333333333,", "\"speed_max\":null,",
         "\"wall\":6.66666667e-06,", "\"stages\":{\"lambda\":0.3}"}) {
@@ -59,16 +59,17 @@ TEST_CASE("numbers of a line of JSON have nine digits, whatever came out of sums
   }
 }
 
-TEST_CASE("a line of JSON has the readings of a measure by wall and number") {
+TEST_CASE("a line of JSON has readings and poses by name and number") {
   Diagnostics m;
   m.readings = {1, 2, 3, 0.5};
-  std::vector<ReadingColumn> columns(3);
+  std::vector<ReadingColumn> columns(4);
   columns[0] = {"load", "z_min", "force", "N", "", Join::mean, 3, Series::measures};
   columns[1] = {"level", "H", "", "m"};  // of another series
   columns[2] = {"load", "z_min", "force_peak", "N", "", Join::peak, 1, Series::measures};
-  const std::string json = measure_json(m, 1, 2, {}, columns);
-  for (const char* part :
-       {"\"loads\":{\"z_min\":{", "\"force_x\":1.0", "\"force_z\":3.0", "\"force_peak\":0.5"})
+  columns[3] = {"pose", "gate", "", "m", "", Join::now, 3, Series::poses};
+  const std::string json = measure_json(m, 1, 2, {}, columns, {0.25, 7, 8});
+  for (const char* part : {"\"loads\":{\"z_min\":{", "\"force_x\":1.0", "\"force_z\":3.0",
+                           "\"force_peak\":0.5", "\"poses\":{\"gate\":{\"x\":0.25,"})
     CHECK(json.find(part) != std::string::npos);
   CHECK(json.find("\"H\"") == std::string::npos);
 }
@@ -77,7 +78,7 @@ TEST_CASE("every diagnostic is a column of the log and a member of each line of 
   Diagnostics m;
   m.front[1] = 7;
   m.unresolved = 9;
-  const std::string json = measure_json(m, 1, 2, {}, {});
+  const std::string json = measure_json(m, 1, 2, {}, {}, {});
   CHECK(json.find("\"front\":[0.0,7.0,0.0]") != std::string::npos);
   CHECK(json.find("\"unresolved\":9,") != std::string::npos);
   std::size_t k = 4;  // behind time, dt, update, iterations
