@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/boundary/body_contact.h"
+#include "kernels/boundary/solid_boundary.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -21,24 +22,20 @@ struct BodyRows {
   double unit, moment_unit;            ///< h/s and h of LoadSums
   const LoadSums* sums;                ///< as in LoadBook
   const LoadSums* clamps;              ///< the same; may be null
-  PushSums* pushes;                    ///< in/out: LoadBook::pushes
+  SharerSums* sharers;                 ///< in/out: SolidScene::sharers
   PosedSolid<Real>* placed = nullptr;  ///< out: of the bodies
   Solid<Real>* before = nullptr;       ///< the same
   SolidVelocity* velocity = nullptr;   ///< the same
+  BodyShare* share = nullptr;          ///< the same
 
-  /// Adds what the body has been given since the last call to what it is owed.
-  PBF_HD void collect(int b) const {
+  /// Adds what the body has been given since the last call to what it is owed. Returns the part of
+  /// it that it may take: if more particles have pushed it than it was split among, less than all.
+  PBF_HD double collect(int b) const {
     BodyState& s = state[b];
     BodyStep& now = step[b];
     const int wall = load_row_of_solid(kind[b].solid);
     LoadSums all = all_parts(sums, wall);
     if (clamps) all = all_parts(clamps, wall, all);
-    PushSums pushed;
-    for (int part = 0; part < kLoadParts; ++part) {
-      PushSums& one = pushes[wall * kLoadParts + part];
-      pushed.count += one.count, pushed.lever += one.lever;
-      one = {};
-    }
     double way[3], moment[3];
     for (int k = 0; k < 3; ++k) {
       way[k] = unit * double(all.way[k] - now.seen.way[k]);
@@ -47,9 +44,27 @@ struct BodyRows {
     now.seen = all;
     put(s.owed, vec(s.owed) + vec(way));
     put(s.owed_spin, vec(s.owed_spin) + (vec(moment) - cross(vec(s.at.center), vec(way))));
-    s.added = max2(kAddedShare * double(pushed.count), kAddedKept * s.added);
-    s.added_inertia =
-        max2(kAddedShare / kLeverUnits * double(pushed.lever), kAddedKept * s.added_inertia);
+    return take_sharers(b);
+  }
+  /// Takes the sharers that have been counted; the part of what they gave that the body may take.
+  PBF_HD double take_sharers(int b) const {
+    const int k = kind[b].solid;
+    Sharers now, &among = state[b].among;
+    for (int part = 0; part < kLoadParts; ++part) {
+      SharerSums& one = sharers[k * kLoadParts + part];
+      now.pushed += double(one.pushed), now.stopped += double(one.stopped);
+      one = {};
+    }
+    const double pushed = follow_number(among.pushed, now.pushed),
+                 stopped = follow_number(among.stopped, now.stopped);
+    share[k].among = {max2(among.pushed, 1.0), max2(among.stopped, 1.0)};
+    return min2(pushed, stopped);
+  }
+  /// Of sharers, who have become `now`; the part of what they gave that the body may take.
+  PBF_HD static double follow_number(double& among, double now) {
+    const double before = max2(among, 1.0);
+    among = max2(now, kSharersKept * among);
+    return before / max2(before, now);
   }
   /// Moves body b from the start of the substep to its end.
   PBF_HD void move(int b) const {
@@ -60,6 +75,9 @@ struct BodyRows {
     const int k = kind[b].solid;
     static_cast<BodyFrame<Real>&>(placed[k].solid) = frame;
     SolidVelocity& u = velocity[k];
+    share[k].free = true;
+    put(share[k].center, vec(s.at.center));
+    share[k].inverse = step[b].inverse;
     u.moves = u.free = true;
     put(u.linear, v - cross(rate, vec(s.at.center)));
     put(u.angular, rate);
@@ -92,10 +110,10 @@ struct StartBodiesPass {
     BodyState& s = rows.state[b];
     BodyStep& step = rows.step[b];
     const BodyKind& kind = rows.kind[b];
-    rows.collect(b);
+    const double part = rows.collect(b);
     step.start = s.at;
     step.inverse = inverse_of(kind, BodyTurn(s.at.turn));
-    follow(kind, step.inverse, s, 1);
+    follow(kind, step.inverse, s, part);
     put(s.velocity, without(kind.held, vec(s.velocity) + rows.dt * gravity));
     put(s.spin, without(kind.kept, vec(s.spin)));
     contacts.find(b, step, rate_by(step.inverse, vec(s.spin)), rows.dt, kFollowRoom);
@@ -149,6 +167,37 @@ struct PredictBodiesPass {
   }
 };
 
+/// Over the rows near solids, when bodies are where they will be at the end of the substep: counts
+/// those that may push them, before any does. Otherwise the first ones to meet a body would give it
+/// more than they should.
+template <class Real>
+struct CountSharersPass {
+  SolidBoundary<Real> boundary;
+  OwnRows<const Vec4<Real>> position, velocity;
+  Real dt;
+
+  PBF_HD int row(int k) const { return boundary.near.row[k]; }
+  PBF_HD void operator()(int k) const {
+    const int i = row(k);
+    const Vec3<Real> x = mul_add(dt, xyz(velocity[i]), xyz(position[i]));
+    const SolidScene<Real>& s = *boundary.solid_scene;
+    for (int solid = 0; solid < s.obstacles(); ++solid) {
+      if (!s.share[solid].free || !s.solid[solid].bounds.has(x)) continue;
+      const Solid<Real>& o = s.solid[solid].solid;
+      const Real away = s.flat ? distance<2>(o, x) : distance<3>(o, x);
+      if (!(away * s.walls.inv_range < Real(1))) continue;
+      SharerSums& to = sharers_of(s, solid, i);
+      add_whole(&to.pushed, 1);
+      if (away < Real(0)) add_whole(&to.stopped, 1);
+    }
+  }
+};
+template <class Real>
+struct TakeSharersPass {
+  BodyRows<Real> rows;
+  PBF_HD void operator()(int b) const { rows.take_sharers(b); }
+};
+
 /// Between two iterations: bodies move by their share of what the last one has given them.
 template <class Real>
 struct FollowFluidPass {
@@ -156,18 +205,18 @@ struct FollowFluidPass {
 
   PBF_HD void operator()(int) const {
     for (int b = 0; b < rows.bodies; ++b) {
-      rows.collect(b);
+      const double all = rows.collect(b);
       const BodyInverse& inverse = rows.step[b].inverse;
       const BodyState before = rows.state[b];
       BodyState& s = rows.state[b];
-      follow(rows.kind[b], inverse, s, 1);
+      follow(rows.kind[b], inverse, s, all);
       const BodyStep& step = rows.step[b];
       const double room = kFollowRoom + way(b, vec(step.velocity), vec(step.rate));
       const double far = away(b);
       if (far > room) {
         s = before;
         const double near = away(b);
-        const double part = near < room ? (room - near) / (far - near) : 0;
+        const double part = near < room ? all * (room - near) / (far - near) : 0;
         follow(rows.kind[b], inverse, s, part);
       }
     }

@@ -129,14 +129,14 @@ struct DeltaPass {
   PBF_HD void finish(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> x = place(i, own), move = free_move(i, x, own, s);
     const Vec3<Real> target = x + move;
-    Vec3<Real> inside;
+    Stop<Real> end;
     if constexpr (Boundary::books) {
       boundary.template book_push<S>(i, x, step(i), p.sor * own.w);
-      inside = boundary.path_end_booked(i, x, target);
+      end = boundary.path_end_booked(i, x, target);
     } else {
-      inside = boundary.path_end(x, target);
+      end.x = boundary.path_end(x, target);
     }
-    const Vec3<Real> v = new_velocity(i, move, target, inside);
+    const Vec3<Real> inside = end.x, v = new_velocity(i, move, target, inside - end.still);
     if (moves_on) {
       move_on(i, inside, v, p, boundary, position_out, velocity, order, moves_on);
       return;

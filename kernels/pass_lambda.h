@@ -127,7 +127,8 @@ struct LambdaPass {
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
     const Vec3<Real> own_gradient = a * in_space(s.gradient) + wall.gradient;
     const Real c = constraint(rho, p);
-    const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
+    Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
+    if constexpr (Boundary::books) denominator += boundary.template ease<S>(i, in_space(x));
     // The denominator is 0 without neighbors, walls and cfm.
     const Real lambda =
         denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);

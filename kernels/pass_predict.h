@@ -62,10 +62,10 @@ PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Push& push, cons
   const bool fast = speed_squared > p.speed_squared;
   if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
   const Vec3<Real> free = mul_add(p.dt, v, x);
-  x = path_end(x, free);
-  // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
+  const auto [end, still] = path_end(x, free);
+  // Only a clamped coordinate changes v: elsewhere end - free is exactly 0.
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
-  return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
+  return {end, mul_add(p.inv_dt, end - free - still, v), fast, mark};
 }
 /// The same with plain walls only.
 template <class Real, class Push, class Boundary>
@@ -73,7 +73,7 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Push& push, const 
                             const Boundary& boundary) {
   const Box<Real>& walls = boundary;
   return predicted(x, accelerated(x, v, p, boundary), push, p,
-                   [&](auto from, auto to) { return walls.path_end(from, to); });
+                   [&](auto from, auto to) { return Stop<Real>{walls.path_end(from, to)}; });
 }
 /// The same for particle i with solids; books loads of walls and solids.
 template <class Real, class Push, class Boundary>

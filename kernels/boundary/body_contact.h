@@ -165,8 +165,8 @@ struct ContactScene {
 
 /// Gives bodies the impulses that keep them apart in a substep of length dt. Keeps their sums, so
 /// that it may be called again after velocities have changed.
-PBF_HD_APART void solve_contacts(const BodyKind* body, BodyState* state, BodyStep* step, int bodies,
-                                 double dt) {
+PBF_HD void solve_contacts(const BodyKind* body, BodyState* state, BodyStep* step, int bodies,
+                           double dt) {
   const auto push = [&](int b, Vec3<double> arm, Vec3<double> impulse) {
     put(state[b].velocity, vec(state[b].velocity) + velocity_by(step[b].inverse, impulse));
     put(state[b].spin, vec(state[b].spin) + without(body[b].kept, cross(arm, impulse)));

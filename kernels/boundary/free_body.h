@@ -32,6 +32,20 @@ struct BodyInverse {
   double inertia[3][3] = {};  ///< 1/h^2, symmetric
 };
 
+/// Numbers of particles: those whose density a free body may push, and those that it stops.
+struct Sharers {
+  double pushed = 0, stopped = 0;
+};
+
+/// What a particle meets of a free body: each of those that meet it at once has a share of its mass
+/// and of its inertia (mass splitting; Tonge, Benevolenski & Voroshilov 2012).
+struct BodyShare {
+  double center[3] = {0, 0, 0};  ///< h, of mass
+  BodyInverse inverse;
+  Sharers among;      ///< at least 1
+  bool free = false;  ///< false: the solid does not give way
+};
+
 /// A free body after a substep.
 struct BodyState {
   BodyPose at;
@@ -39,8 +53,7 @@ struct BodyState {
   double spin[3] = {0, 0, 0};       ///< h^2/s, angular momentum about it
   double owed[3] = {0, 0, 0};       ///< h/s, impulse that it has not yet taken
   double owed_spin[3] = {0, 0, 0};  ///< h^2/s, the same of the spin
-  double added = 0;                 ///< mass of the fluid that moves with it
-  double added_inertia = 0;         ///< h^2, of the fluid that turns with it
+  Sharers among;                    ///< as many particles it is split among
   double energy = 0;                ///< h^2/s^2, kinetic and potential, after the update
 
   template <class Self, class F>
@@ -51,7 +64,7 @@ struct BodyState {
     for (auto& x : s.spin) f(x);
     for (auto& x : s.owed) f(x);
     for (auto& x : s.owed_spin) f(x);
-    f(s.added), f(s.added_inertia), f(s.energy);
+    f(s.among.pushed), f(s.among.stopped), f(s.energy);
   }
 };
 
@@ -85,7 +98,7 @@ struct BodyTurn {
 };
 
 /// At a turn from the pose in the scene.
-PBF_HD_APART BodyInverse inverse_of(const BodyKind& b, const BodyTurn& turn) {
+PBF_HD BodyInverse inverse_of(const BodyKind& b, const BodyTurn& turn) {
   BodyInverse out;
   double in[3][3], half[3][3];
   for (int i = 0; i < 3; ++i) {
@@ -145,30 +158,25 @@ PBF_HD_APART BodyFrame<Real> frame_at(const BodyKind& b, const BodyPose& pose) {
   return out;
 }
 
-/// The added mass and inertia over those of the particles that are pushed. From 1 on, what a single
-/// particle gives to a body turns their approach at most into as fast a retreat, however light the
-/// body is and wherever it is hit: 1/(m + c) + r^2/(I + c r^2) <= 2/c in masses of a particle.
-constexpr double kAddedShare = 1;
-/// They fall by no more than this factor in an iteration: particles that are not pushed in one
-/// iteration are pushed again in a later one.
-constexpr double kAddedKept = 0.9;
+/// |way|^2 over the mass with which a body takes part in a push along `way` at x.
+PBF_HD double ease_of(const BodyShare& of, Vec3<double> x, Vec3<double> way) {
+  const Vec3<double> turn = cross(x - vec(of.center), way);
+  return dot(way, velocity_by(of.inverse, way)) + dot(turn, rate_by(of.inverse, turn));
+}
 
-/// The body takes m/(m + a) of what it is owed, with the added mass a, and the rest later: fluid
-/// that moves along with a body has to be moved by the same impulse; the same of turns. Without
-/// this, bodies lighter than the fluid gain energy without limit (added-mass instability of
-/// explicit coupling; Causin, Gerbeau & Nobile 2005). part: of this share. What is owed along axes
-/// that do not move is lost to them.
+/// The number of particles among which a body is split falls by no more than this factor in an
+/// iteration.
+constexpr double kSharersKept = 0.9;
+
+/// The body takes `part` of what it is owed. What is owed along axes that do not move is lost to
+/// them.
 PBF_HD void follow(const BodyKind& b, const BodyInverse& inverse, BodyState& s, double part) {
   const Vec3<double> owed = without(b.held, vec(s.owed));
   const Vec3<double> turn = without(b.kept, vec(s.owed_spin));
-  const double squared = dot(turn, turn);
-  const double ease = squared > 0 ? dot(turn, rate_by(inverse, turn)) / squared : 0;
-  const double share = part * b.mass / (b.mass + s.added);
-  const double turning = part / (1 + ease * s.added_inertia);
-  put(s.velocity, vec(s.velocity) + velocity_by(inverse, share * owed));
-  put(s.spin, vec(s.spin) + turning * turn);
-  put(s.owed, (1 - share) * owed);
-  put(s.owed_spin, (1 - turning) * turn);
+  put(s.velocity, vec(s.velocity) + velocity_by(inverse, part * owed));
+  put(s.spin, vec(s.spin) + part * turn);
+  put(s.owed, (1 - part) * owed);
+  put(s.owed_spin, (1 - part) * turn);
 }
 
 /// h^2/s^2, kinetic and potential.

@@ -27,13 +27,10 @@ struct LoadSums {
   std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
 };
 
-/// The particles that a free body has pushed in an iteration: how many, and the sum of their
-/// squared levers, |r x n|^2 with the arm r from its center and the direction n of the push, in
-/// units of h^2/kLeverUnits.
-struct PushSums {
-  std::int64_t count = 0, lever = 0;
+/// Sharers of a free body, counted in an iteration.
+struct SharerSums {
+  std::int64_t pushed = 0, stopped = 0;
 };
-inline constexpr int kLeverUnits = 1 << 20;
 
 /// Load of one wall since the last reading, per mass of a particle, in the internal frame.
 struct Load {
@@ -84,7 +81,6 @@ struct LoadBook {
   LoadSums* sums = nullptr;      ///< kLoadParts for each wall; null: there are none
   LoadSums* clamps = nullptr;    ///< the same for predictions; null: these are among `sums`
   Real moment_scale = 1;         ///< 2^-e, 2^e above the longest edge of the box, h
-  PushSums* pushes = nullptr;    ///< kLoadParts for each wall; null: without free bodies
   const Patch* patch = nullptr;  ///< pressure gauges
   int patches = 0;
   /// Bit k: wall k has sums of its own. Walls beyond the last bit always have them.
@@ -111,18 +107,7 @@ struct LoadBook {
                   Real(-patch_way(patch[k], x, way)));
   }
 
-  /// Counts a push by `way` of particle i, which is at `arm` from the center of a body.
-  PBF_HD void count(int wall, int i, Vec3<Real> arm, Vec3<Real> way) const {
-    const Real squared = dot(way, way);
-    if (!(squared > Real(0))) return;
-    const Vec3<Real> turn = cross(arm, way);
-    const Real lever = min2(dot(turn, turn) / squared, Real(1e6));
-    PushSums& to = pushes[wall * kLoadParts + part_of(i)];
-    add_whole(&to.count, 1);
-    add_whole(&to.lever, std::int64_t(lever * Real(kLeverUnits)));
-  }
-
- private:
+  /// Which of the partial sums of a wall particle i adds to.
   PBF_HD static int part_of(int i) {
 #if defined(__CUDA_ARCH__)
     return i % kLoadParts;  // adjacent threads write to different parts
@@ -130,6 +115,8 @@ struct LoadBook {
     return (i >> 8) % kLoadParts;  // a thread has about 256 adjacent particles
 #endif
   }
+
+ private:
   /// The wall gets the opposite.
   PBF_HD static void add_units(std::int64_t* to, Real x) {
     if (x != Real(0)) add_whole(to, units(-x));

@@ -31,13 +31,13 @@ struct SolidBoundary : Box<Real> {
   }
   /// The end of a path of particle i. `book`: loads of walls and solids are booked. `start`: the
   /// path begins with the step.
-  PBF_HD Vec3<Real> path_end(bool book, bool start, int i, Vec3<Real> from, Vec3<Real> to) const {
+  PBF_HD Stop<Real> path_end(bool book, bool start, int i, Vec3<Real> from, Vec3<Real> to) const {
     const Vec3<Real> in = Box<Real>::path_end(from, to);
     const bool free = in.x == to.x && in.y == to.y && in.z == to.z;
-    if ((free || !book) && !(obstacles && bounds.meets(from, to))) return in;
+    if ((free || !book) && !(obstacles && bounds.meets(from, to))) return {in};
     return solid_scene_path_end(*solid_scene, book, start, i, from, to);
   }
-  PBF_HD Vec3<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
+  PBF_HD Stop<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
     return path_end(booked, false, i, from, to);
   }
   /// Books that particle i, at x, was moved by factor * push_gradient().
@@ -46,6 +46,12 @@ struct SolidBoundary : Box<Real> {
     if (!booked || factor == Real(0)) return;
     if ((loaded && this->near_wall(x)) || (obstacles && bounds.has(x)))
       pbf::book_push<S>(*solid_scene, i, x, step, factor);
+  }
+  /// What free bodies add to the divisor of lambda.
+  template <Smoothing S>
+  PBF_HD Real ease(int i, Vec3<Real> x) const {
+    if (!booked || !obstacles || !solid_scene->share || !bounds.has(x)) return Real(0);
+    return ease_of_bodies<S>(*solid_scene, i, x);
   }
   /// Whether x is near an obstacle, or near a wall if walls have loads.
   PBF_HD bool is_near(Vec3<Real> x) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/boundary/box.h"
+#include "kernels/boundary/free_body.h"
 #include "kernels/boundary/keep_out.h"
 #include "kernels/boundary/loads.h"
 #include "kernels/boundary/moving.h"
@@ -31,6 +32,8 @@ struct SolidScene {
   int casings = 0;    ///< of them
   bool flat = false;  ///< two dimensions
   LoadBook<Real> loads{};
+  const BodyShare* share = nullptr;  ///< of each solid; null: none is free
+  SharerSums* sharers = nullptr;     ///< kLoadParts for each solid
 
   PBF_HD int obstacles() const { return solids - casings; }
 };
@@ -59,7 +62,6 @@ template <class Real>
 PBF_HD void book_on(const SolidScene<Real>& s, int k, int i, Vec3<Real> x, Vec3<Real> way,
                     bool start) {
   s.loads.add(load_row_of_solid(k), i, x, way, start);
-  if (s.loads.pushes) s.loads.count(load_row_of_solid(k), i, x - s.solid[k].solid.center, way);
 }
 
 /// Where solid k carries the point `from` in a step.
@@ -80,6 +82,28 @@ PBF_HD Vec3<Real> push_place(const SolidScene<Real>& s, int k, Vec3<Real> x,
 template <class Real>
 PBF_HD Vec3<Real> push_place(const SolidScene<Real>&, int, Vec3<Real> x, AnyWay) {
   return x;
+}
+
+template <class Real>
+PBF_HD Vec3<double> in_double(Vec3<Real> a) {
+  return {double(a.x), double(a.y), double(a.z)};
+}
+template <class Real>
+PBF_HD SharerSums& sharers_of(const SolidScene<Real>& s, int k, int i) {
+  return s.sharers[k * kLoadParts + LoadBook<Real>::part_of(i)];
+}
+/// Of the displacement that keeps particle i, which is at x, out of solid k, the part that becomes
+/// velocity. A free body takes the same impulse, and both move on with one velocity.
+template <class Real>
+PBF_HD Vec3<Real> stopped_by(const SolidScene<Real>& s, int k, int i, Vec3<Real> x,
+                             Vec3<Real> way) {
+  if (!s.share || !s.share[k].free) return way;
+  const Vec3<double> w = in_double(way);
+  const double squared = dot(w, w);
+  if (!(squared > 0)) return way;
+  add_whole(&sharers_of(s, k, i).stopped, 1);
+  const BodyShare& b = s.share[k];
+  return Real(squared / (squared + b.among.stopped * ease_of(b, in_double(x), w))) * way;
 }
 
 /// Whether x is within the reach of an obstacle.
@@ -149,10 +173,31 @@ PBF_HD_APART BoundaryTerm<Real> solid_scene_term(const SolidScene<Real>& s, Vec3
   return w;
 }
 
+/// What free bodies add to the divisor of lambda of particle i, which is at x: they move, too.
+template <Smoothing S, class Real>
+PBF_HD_APART Real ease_of_bodies(const SolidScene<Real>& s, int i, Vec3<Real> x) {
+  if (!s.walls.adds_density) return Real(0);
+  const Real left = s.walls.scale - s.walls.template term<S>(x).density;
+  double ease = 0;
+  for_solids_at<S>(s, 0, s.obstacles(), x, AnyWay{}, [&](int k, const SolidTerm<Real>& one) {
+    if (!s.share[k].free || !(one.share > Real(0))) return;
+    add_whole(&sharers_of(s, k, i).pushed, 1);
+    const BodyShare& b = s.share[k];
+    ease += b.among.pushed * ease_of(b, in_double(x), in_double(left * one.gradient));
+  });
+  return Real(ease);
+}
+
+/// Where a path ends, and which part of its last displacement is none of the velocity.
+template <class Real>
+struct Stop {
+  Vec3<Real> x, still{};
+};
+
 /// The end of a path of particle i. `booked`: displacements by walls and obstacles become loads.
 /// `start`: see keep_out().
 template <class Real>
-PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool booked, bool start,
+PBF_HD_APART Stop<Real> solid_scene_path_end(const SolidScene<Real>& s, bool booked, bool start,
                                              int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
@@ -168,6 +213,7 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
     return in;
   };
   to = inside_walls(to);
+  Vec3<Real> still{};
   // A path along one obstacle may meet another one or a wall. If there is no way out after some
   // rounds, the particle stays where it was, or moves with the solid.
   constexpr int rounds = 3;
@@ -180,15 +226,17 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
       const bool last = round == rounds && wedged;
       // `from` may be beyond a wall by rounding: DeltaPass::place().
       const Vec3<Real> stay = start && s.before ? carried(s, k, from) : from;
-      const Vec3<Real> at = last ? s.walls.path_end(from, stay) : end.x;
-      move_by(load_row_of_solid(k), at - to);
-      if (last) return at;
+      const Vec3<Real> at = last ? s.walls.path_end(from, stay) : end.x, way = at - to;
+      const Vec3<Real> taken = booked ? stopped_by(s, k, i, to, way) : way;
+      still = still + (way - taken);
+      move_by(load_row_of_solid(k), taken);
+      if (last) return {at, still};
       to = inside_walls(at);
       moved = moved || wedged;
     }
     if (!moved) break;
   }
-  return to;
+  return {to, still};
 }
 
 /// Books that particle i, at x, was moved by factor * the gradient of solid_scene_term().

@@ -13,8 +13,8 @@ struct FreeBodies;
 using BodyNeeds =
     Needs<Looks<field::body_kinds>, Looks<field::body_states>, Places<field::body_states>,
           Looks<field::body_steps>, Places<field::body_steps>, Looks<field::load_sums>,
-          If<carries_loads, Looks<field::clamp_sums>>, Looks<field::push_counts>,
-          Places<field::push_counts>>;
+          If<carries_loads, Looks<field::clamp_sums>>, Looks<field::sharers>,
+          Places<field::sharers>, Places<field::body_shares>>;
 
 template <class G>
 BodyRows<typename G::Real> body_rows(const G& c) {
@@ -27,10 +27,11 @@ BodyRows<typename G::Real> body_rows(const G& c) {
           moment_unit(c.p.boundary),
           c[field::load_sums],
           c.declared(field::clamp_sums),
-          c[field::push_counts],
+          c[field::sharers],
           c.declared(field::solids),
           c.declared(field::solids_before),
-          c.declared(field::solid_velocity)};
+          c.declared(field::solid_velocity),
+          c.declared(field::body_shares)};
 }
 template <class G>
 Vec3<double> gravity_of(const G& c) {
@@ -62,6 +63,21 @@ struct MoveBodies {
   }
 };
 
+/// Behind it, before particles move.
+struct CountSharers {
+  static constexpr PassText text{"sharers of bodies", "predict"};
+  using Needs =
+      pbf::Needs<Reads<field::position>, Reads<field::velocity>, NearNeeds, ShareNeeds, BodyNeeds>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
+    const BodyRows<Real> rows = body_rows(c);
+    c.listed(c[field::near_count],
+             CountSharersPass<Real>{solids_of(c), c[field::position], c[field::velocity], c.p.dt});
+    c.items(rows.bodies, TakeSharersPass<Real>{rows});
+  }
+};
+
 /// At the start of each iteration.
 struct FollowFluid {
   static constexpr PassText text{"follow fluid", "delta"};
@@ -83,13 +99,14 @@ struct EndBodies {
 };
 
 struct FreeBodies {
-  using Passes = PassList<MoveBodies, FollowFluid, EndBodies>;
+  using Passes = PassList<MoveBodies, CountSharers, FollowFluid, EndBodies>;
   static void add(const Scene& s, auto& b) {
     if (!has_free_bodies(s)) {
       if (!s.obstacles.empty()) b.left_out("free bodies", "no obstacle is free");
       return;
     }
     b.start(MoveBodies());
+    b.start(CountSharers());
     if (s.solver.iterations > 0) b.iteration(FollowFluid());
     b.end(EndBodies());
   }
@@ -102,8 +119,7 @@ struct FreeBodies {
       const std::vector<BodyKind> kinds = body_kinds(c.scene, c.plan);
       c.put(field::body_kinds, kinds);
       c.put(field::body_steps, std::vector<BodyStep>(kinds.size()));
-      const std::vector<PushSums> none(c.kept_rows(field::push_counts) * kLoadParts);
-      c.exec.to_device(none.data(), none.size(), c.data(field::push_counts));
+      c.put(field::body_shares, std::vector<BodyShare>(std::size_t(c.rows_of(field::body_shares))));
       c.put(field::body_states, first_bodies(c.scene, c.plan, kinds));
       const Spots spots = contact_spots(
           c.scene, c.plan, std::size_t(c.rows_of(field::solid_spots)) - c.scene.obstacles.size());

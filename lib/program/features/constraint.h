@@ -25,11 +25,12 @@ struct Density {
 
 /// Velocities of neighbors are needed for marked particles, which the first iteration counts before
 /// it moves anything.
-using LambdaNeeds = Needs<Gathers<field::position>, UsesLists,
-                          Reads<field::position, W::mark, When::first_iteration>,
-                          Gathers<field::velocity, W::any, When::first_iteration>,
-                          If<is_second_order, Reads<field::velocity>>, NearNeeds, NearSumNeeds,
-                          Writes<other<field::position>, W::lambda>, Adds<field::counts>>;
+using LambdaNeeds =
+    Needs<Gathers<field::position>, UsesLists,
+          Reads<field::position, W::mark, When::first_iteration>,
+          Gathers<field::velocity, W::any, When::first_iteration>,
+          If<is_second_order, Reads<field::velocity>>, NearNeeds, NearSumNeeds, ShareNeeds,
+          Writes<other<field::position>, W::lambda>, Adds<field::counts>>;
 
 template <bool with_density, class G>
 void launch_lambda(const G& c) {

@@ -57,7 +57,7 @@ using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
   using Needs = pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>,
-                           DeltaNeeds, PushNeeds>;
+                           DeltaNeeds, ShareNeeds>;
   static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr, nullptr); }
 };
 

@@ -161,7 +161,7 @@ struct BookLevels {
             LevelLoadPass<Real>{l.all, l.grid, c[field::multiplier], c[field::cell_factor],
                                 c[field::cell_count], c.p.boundary.extent,
                                 load_book(c.scene, c.p.boundary, c[field::load_sums].sums(),
-                                          nullptr, nullptr, c[field::patches])});
+                                          nullptr, c[field::patches])});
   }
 };
 

@@ -26,10 +26,6 @@ inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 /// The same of predictions, in time steps of second order: no share of it is taken over.
 inline constexpr struct ClampRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } clamp_sums{{"clamp sums", per_wall, Life::update}};
-/// Per wall: kLoadParts times PushSums, in scenes with free bodies. Those of bodies are taken and
-/// cleared in each iteration, nothing reads those of others.
-inline constexpr struct PushCounts : Plain<PushSums, kLoadParts, std::int64_t> {
-} push_counts{{"push counts", per_wall, Life::run}};
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
 } loads{{"loads", per_wall, Life::state}};
@@ -63,18 +59,15 @@ using BookNeeds =
 using StartBookNeeds =
     Needs<If<carries_loads, Adds<field::clamp_sums>>, If<carries_no_loads, Adds<field::load_sums>>,
           If<has_pressure_gauges, Looks<field::patches>>>;
-/// Of one that moves particles at free bodies, too.
-using PushNeeds = If<has_free_bodies, Adds<field::push_counts>>;
 
-/// pushes: those of field::push_counts, or null; sums: the rows of field::load_sums, or null;
+/// sums: the rows of field::load_sums, or null;
 /// clamps: those of field::clamp_sums, or null; patch: those of field::patches.
 template <class Real>
 LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums, LoadSums* clamps,
-                         PushSums* pushes, const Patch* patch) {
+                         const Patch* patch) {
   return {sums,
           clamps,
           Real(1 / moment_unit(box)),
-          pushes,
           patch,
           gauges_of<PatchTally>(scene),
           summed_walls(scene)};

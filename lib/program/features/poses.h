@@ -3,6 +3,7 @@
 
 #include "kernels/boundary/solid_scene.h"
 #include "lib/program/feature.h"
+#include "lib/program/free_bodies.h"
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
 
@@ -25,12 +26,21 @@ inline constexpr struct SolidsBefore : Objects {
 } solids_before{{kBytesOf<Solid>, "solids before", per_obstacle, Life::run}};
 inline constexpr struct SolidVelocities : Plain<SolidVelocity> {
 } solid_velocity{{"solid velocity", per_obstacle, Life::run}};
+/// Of obstacles that are free bodies (kernels/README.md, "Free bodies"), and particles that may
+/// push them: kLoadParts for each solid, 0 between two updates.
+inline constexpr struct BodyShares : Plain<BodyShare> {
+} body_shares{{"body shares", per_obstacle, Life::run}};
+inline constexpr struct SharerRows : Plain<SharerSums, kLoadParts, std::int64_t> {
+} sharers{{"sharers", per_obstacle, Life::update}};
 /// The motion of the tank in the present step.
 inline constexpr struct Frame : Objects {
 } frame{{kBytesOf<FrameStep>, "frame", one_row, Life::run}};
 }  // namespace pbf::program_module::field
 
 namespace pbf::PBF_VARIANT {
+
+/// The needs of a pass in which free bodies give way.
+using ShareNeeds = If<has_free_bodies, Looks<field::body_shares>, Adds<field::sharers>>;
 
 template <class Real>
 PosedSolid<Real> row_of(const field::SolidRows&);

@@ -63,7 +63,7 @@ using ComeNearNeeds =
 /// The needs of a pass that moves particles: loads are booked, too.
 using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
-using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds, PushNeeds,
+using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds, ShareNeeds,
                         If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>,
                         If<is_damped, Adds<field::dissipation>>>;
 using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
@@ -166,7 +166,9 @@ struct NearSolids {
       scene.solids = int(s.obstacles.size()) + scene.casings;
       scene.flat = c.p.dimensions == 2;
       scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::clamp_sums),
-                              c.data(field::push_counts), c.data(field::patches));
+                              c.data(field::patches));
+      scene.share = c.data(field::body_shares);
+      scene.sharers = c.data(field::sharers);
       c.put(field::solid_scene, {scene});
       if (has_maps(s)) {
         c.put(field::solid_maps, map_array<Real>(c.plan.solids));

@@ -6,7 +6,7 @@ set(lie_tests declarations state_feature)
 
 # what a pass does with a field
 seeded_defect(undeclared_read declarations lib/program/features/correction.h
-  [[Reads<field::density>, DeltaNeeds>;]] [[DeltaNeeds>;]])
+  [[W::inverse_density>, Reads<field::density>,]] [[W::inverse_density>,]])
 seeded_defect(undeclared_write declarations lib/program/features/confinement.h
   [[UsesLists, Writes<field::curl>>;]] [[UsesLists>;]])
 seeded_defect(undeclared_gather declarations lib/program/features/confinement.h

@@ -106,8 +106,12 @@ seeded_defect(body_turns_backwards tests/backend/test_free_bodies.cpp kernels/bo
 seeded_defect(body_inertia_does_not_turn tests/backend/test_free_bodies.cpp
   kernels/boundary/free_body.h
   [[dot(vec(half[i]), vec(turn.row[k]));]] [[b.inertia[i][k];]])
-seeded_defect(body_owed_is_lost tests/backend/test_free_bodies.cpp kernels/boundary/free_body.h
-  [[put(s.owed, (1 - share) * owed);]] [[put(s.owed, 0.0 * owed);]])
+seeded_defect(body_takes_half tests/backend/test_free_bodies.cpp kernels/boundary/free_body.h
+  [[velocity_by(inverse, part * owed)]] [[velocity_by(inverse, 0.5 * part * owed)]])
+seeded_defect(body_does_not_give_way tests/backend/test_free_bodies.cpp kernels/pass_lambda.h
+  [[denominator += boundary]] [[denominator += Real(0) * boundary]])
+seeded_defect(body_stops_particles_at_once tests/backend/test_free_bodies.cpp kernels/boundary/solid_scene.h
+  [[(squared + b.among.stopped * ease]] [[(squared + 0.0 * ease]])
 seeded_defect(body_moment_about_corner tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
   [[(vec(moment) - cross(vec(s.at.center), vec(way)))]] [[vec(moment)]])
 seeded_defect(body_sums_counted_twice tests/backend/test_free_bodies.cpp kernels/pass_bodies.h
@@ -135,9 +139,10 @@ seeded_defect(contact_without_turn tests/backend/test_free_bodies.cpp
   kernels/boundary/body_contact.h
   [[without(body[b].kept, cross(arm, impulse))]] [[without(body[b].kept, 0.0 * cross(arm, impulse))]])
 seeded_defect(body_mass_center_of_shape tests/unit/program/body_mass.cpp lib/program/body_mass.cpp
-  [[out.center + m.center[k] * rows[k]]] [[out.center + 0 * m.center[k] * rows[k]]])
+  [[out.center + m.center[k] * rows[k];]] [[out.center + 0 * m.center[k] * rows[k];]])
 seeded_defect(body_inertia_not_along_scene tests/unit/program/body_mass.cpp
   lib/program/body_mass.cpp
-  [[rows[i][a] * in_body[i][j] * rows[j][b]]] [[rows[a][i] * in_body[i][j] * rows[b][j]]])
+  [[rows[i][a] * in_body[i][j] * rows[j][b];]]
+  [[rows[a][i] * in_body[i][j] * rows[b][j];]])
 seeded_defect(body_inertia_without_trace tests/unit/program/body_mass.cpp lib/program/body_mass.cpp
   [[(i == j ? trace : 0) - second]] [[(i == j ? trace : 1) - second]])

@@ -12,7 +12,8 @@ seeded_defect(wrong_dt predict kernels/pass_predict.h
 seeded_defect(damping_ignored predict kernels/pass_predict.h
   [[mul_add(p.damping, v,]] [[mul_add(Real(1), v,]])
 seeded_defect(predict_clamp_dropped predict kernels/pass_predict.h
-  [[  x = path_end(x, free);]] [[  x = free;]])
+  [[const auto [end, still] = path_end(x, free);]]
+  [[const Vec3<Real> end = free, still{};]])
 
 # grid
 seeded_defect(stale_bins grid kernels/pass_predict.h
@@ -69,7 +70,7 @@ seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w +=
 seeded_defect(frozen_particle delta kernels/pass_delta.h
   [[with_w(inside, Real(1) / density[i])]] [[with_w(i == 7 ? x : inside, Real(1) / density[i])]])
 seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
-  [[      inside = boundary.path_end(x, target);]] [[      inside = target;]])
+  [[      end.x = boundary.path_end(x, target);]] [[      end.x = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
   [[xyz(velocity[i]) + p.inv_dt * (move + (inside - target))]] [[xyz(velocity[i])]])
 seeded_defect(neighbors_lambda_missing delta kernels/pass_delta.h
@@ -161,10 +162,10 @@ seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
   [[{at(done) * n, steps * n,]]
   [[{at(done) * n + 1, steps * n,]] solids)
 seeded_defect(load_of_clamp_missing loads kernels/boundary/solid_scene.h
-  [[      move_by(load_row_of_solid(k), at - to);]] [[]] solids)
+  [[      move_by(load_row_of_solid(k), taken);]] [[]] solids)
 seeded_defect(load_of_walls_share loads kernels/boundary/solid_scene.h
-  [[s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);]]
-  [[s.loads.add(load_row_of_solid(k), i, x, factor * one.gradient);]] solids)
+  [[book_on(s, k, i, x, (factor * left) * one.gradient, false);]]
+  [[book_on(s, k, i, x, factor * one.gradient, false);]] solids)
 seeded_defect(load_of_far_rows loads lib/program/posed_solids.h
   [[reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom),]]
   [[reach = Real(0.5) / walls.inv_range + walls.margin,]] solids)

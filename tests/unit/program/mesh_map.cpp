@@ -212,7 +212,7 @@ struct OneSolid {
   OneSolid(const OneSolid&) = delete;
   Vec3<double> end(const Vec3<double>& from, const Vec3<double>& to) const {
     const Vec3<double> c = posed.solid.center;
-    return solid_scene_path_end(scene, false, true, 0, c + from, c + to) - c;
+    return solid_scene_path_end(scene, false, true, 0, c + from, c + to).x - c;
   }
   double away(const Vec3<double>& x) const { return made.at().distance<3>(x); }
 };
