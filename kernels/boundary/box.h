@@ -15,6 +15,12 @@ struct BoundaryTerm {
   Vec3<Real> gradient;
 };
 
+/// Where a path ends, and the part of the way there that is none of the velocity.
+template <class Real>
+struct Stop {
+  Vec3<Real> x, still{};
+};
+
 /// A boundary gives passes three things: its contribution to the density and the gradient, the end
 /// of a path within a step, and the distance of a particle behind it.
 template <class Real>

@@ -165,8 +165,11 @@ PBF_HD double ease_of(const BodyShare& of, Vec3<double> x, Vec3<double> way) {
 }
 
 /// The number of particles among which a body is split falls by no more than this factor in an
-/// iteration.
-constexpr double kSharersKept = 0.9;
+/// iteration: those that do not meet it in one meet it again in a later one.
+constexpr double kSharersKept = 0.5;
+/// h: at most so far is a particle moved out of a free body without becoming faster. What it is
+/// still behind the surface, it makes in a later iteration.
+constexpr double kMostStill = 0.05;
 
 /// The body takes `part` of what it is owed. What is owed along axes that do not move is lost to
 /// them.

@@ -92,18 +92,30 @@ template <class Real>
 PBF_HD SharerSums& sharers_of(const SolidScene<Real>& s, int k, int i) {
   return s.sharers[k * kLoadParts + LoadBook<Real>::part_of(i)];
 }
-/// Of the displacement that keeps particle i, which is at x, out of solid k, the part that becomes
-/// velocity. A free body takes the same impulse, and both move on with one velocity.
+/// How a particle is kept out of a solid.
 template <class Real>
-PBF_HD Vec3<Real> stopped_by(const SolidScene<Real>& s, int k, int i, Vec3<Real> x,
-                             Vec3<Real> way) {
-  if (!s.share || !s.share[k].free) return way;
+struct KeptOut {
+  Vec3<Real> at;         ///< where it is then
+  Vec3<Real> given;      ///< the part of the way there that becomes velocity
+  bool entirely = true;  ///< or it is still behind the surface
+};
+/// Of particle i at x, which solid k takes to `at`. A free body gives it a part of this way as
+/// velocity and takes the same impulse, so that both go on with one velocity.
+template <class Real>
+PBF_HD KeptOut<Real> kept_out(const SolidScene<Real>& s, int k, int i, Vec3<Real> x,
+                              Vec3<Real> at) {
+  const Vec3<Real> way = at - x;
+  if (!s.share || !s.share[k].free) return {at, way};
   const Vec3<double> w = in_double(way);
   const double squared = dot(w, w);
-  if (!(squared > 0)) return way;
+  if (!(squared > 0)) return {at, way};
   add_whole(&sharers_of(s, k, i).stopped, 1);
   const BodyShare& b = s.share[k];
-  return Real(squared / (squared + b.among.stopped * ease_of(b, in_double(x), w))) * way;
+  const double part = squared / (squared + b.among.stopped * ease_of(b, in_double(x), w));
+  const double still = kMostStill / square_root(squared);
+  const Vec3<Real> given = Real(part) * way;
+  if (!(part + still < 1)) return {at, given};
+  return {x + Real(part + still) * way, given, false};
 }
 
 /// Whether x is within the reach of an obstacle.
@@ -188,12 +200,6 @@ PBF_HD_APART Real ease_of_bodies(const SolidScene<Real>& s, int i, Vec3<Real> x)
   return Real(ease);
 }
 
-/// Where a path ends, and which part of its last displacement is none of the velocity.
-template <class Real>
-struct Stop {
-  Vec3<Real> x, still{};
-};
-
 /// The end of a path of particle i. `booked`: displacements by walls and obstacles become loads.
 /// `start`: see keep_out().
 template <class Real>
@@ -226,13 +232,13 @@ PBF_HD_APART Stop<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
       const bool last = round == rounds && wedged;
       // `from` may be beyond a wall by rounding: DeltaPass::place().
       const Vec3<Real> stay = start && s.before ? carried(s, k, from) : from;
-      const Vec3<Real> at = last ? s.walls.path_end(from, stay) : end.x, way = at - to;
-      const Vec3<Real> taken = booked ? stopped_by(s, k, i, to, way) : way;
-      still = still + (way - taken);
-      move_by(load_row_of_solid(k), taken);
-      if (last) return {at, still};
-      to = inside_walls(at);
-      moved = moved || wedged;
+      KeptOut<Real> out{last ? s.walls.path_end(from, stay) : end.x};
+      if (booked) out = kept_out(s, k, i, to, out.at);
+      move_by(load_row_of_solid(k), out.given);
+      if (booked) still = still + (out.at - to - out.given);
+      if (last) return {out.at, still};
+      to = inside_walls(out.at);
+      moved = moved || (wedged && out.entirely);
     }
     if (!moved) break;
   }
