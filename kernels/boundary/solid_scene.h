@@ -96,7 +96,7 @@ PBF_HD SharerSums& sharers_of(const SolidScene<Real>& s, int k, int i) {
 template <class Real>
 struct KeptOut {
   Vec3<Real> at;         ///< where it is then
-  Vec3<Real> given;      ///< the part of the way there that becomes velocity
+  Vec3<Real> given{};    ///< the part of the way there that becomes velocity
   bool entirely = true;  ///< or it is still behind the surface
 };
 /// Of particle i at x, which solid k takes to `at`. A free body gives it a part of this way as
