@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2270},      {"kernels", 7520},   {"lib/base", 1850},    {"lib/campaign", 3850},
+    {"app", 2270},      {"kernels", 7640},   {"lib/base", 1850},    {"lib/campaign", 3850},
     {"lib/exec", 6900}, {"lib/io", 4130},    {"lib/program", 9020}, {"lib/render", 3950},
     {"lib/run", 6170},  {"lib/scene", 9130}, {"lib/solver", 3070},  {"lib/verify", 2320},
 };

@@ -162,7 +162,7 @@ seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
   [[{at(done) * n, steps * n,]]
   [[{at(done) * n + 1, steps * n,]] solids)
 seeded_defect(load_of_clamp_missing loads kernels/boundary/solid_scene.h
-  [[      move_by(load_row_of_solid(k), taken);]] [[]] solids)
+  [[      move_by(load_row_of_solid(k), out.given);]] [[]] solids)
 seeded_defect(load_of_walls_share loads kernels/boundary/solid_scene.h
   [[book_on(s, k, i, x, (factor * left) * one.gradient, false);]]
   [[book_on(s, k, i, x, factor * one.gradient, false);]] solids)

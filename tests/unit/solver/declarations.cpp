@@ -222,9 +222,9 @@ std::string first_difference(const Scenario& of, const std::string& forgets) {
 /// Fields that a pass may touch for some particles alone: fast ones, those at the same place, those
 /// near walls, solids or gauges, those that lose energy.
 bool for_some(const std::string& field) {
-  static const std::set<std::string> all = {"clamp sums",  "counts",      "dissipation", "id",
-                                            "load sums",   "near count",  "near rows",   "patches",
-                                            "push counts", "solid scene", "velocity"};
+  static const std::set<std::string> all = {
+      "body shares", "clamp sums", "counts",  "dissipation", "id",          "load sums",
+      "near count",  "near rows",  "patches", "sharers",     "solid scene", "velocity"};
   return all.contains(field);
 }
 
