@@ -67,14 +67,19 @@ struct MoveBodies {
 struct CountSharers {
   static constexpr PassText text{"sharers of bodies", "predict"};
   using Needs =
-      pbf::Needs<Reads<field::position>, Reads<field::velocity>, NearNeeds, ShareNeeds, BodyNeeds>;
+      pbf::Needs<Reads<field::position>, Reads<field::velocity>, Looks<field::near_row>,
+                 Looks<field::near_count>, SolidNeeds, ShareNeeds, Looks<field::body_kinds>,
+                 Looks<field::body_states>, Places<field::body_states>, Looks<field::sharers>,
+                 Places<field::sharers>, Places<field::body_shares>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    const BodyRows<Real> rows = body_rows(c);
     c.listed(c[field::near_count],
              CountSharersPass<Real>{solids_of(c), c[field::position], c[field::velocity], c.p.dt});
-    c.items(rows.bodies, TakeSharersPass<Real>{rows});
+    BodyRows<Real> rows{};
+    rows.kind = c[field::body_kinds], rows.state = c[field::body_states];
+    rows.sharers = c[field::sharers], rows.share = c[field::body_shares];
+    c.items(int(free_bodies(c.scene)), TakeSharersPass<Real>{rows});
   }
 };
 
