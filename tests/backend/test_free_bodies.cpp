@@ -299,6 +299,26 @@ TEST_CASE("fluid and bodies together gain at most a twentieth of their energy in
   CHECK(m.energy_rise < 0.05);
 }
 
+TEST_CASE("a body of a twentieth of the density of water does not bounce off it as it fell") {
+  Case c = flat_block(34, 11, 0.02, 0);
+  Scene& s = c.scene;
+  const double d = s.fluid.spacing;
+  s.domain.max[0] = s.domain.min[0] + 34 * d;
+  s.domain.max[2] = s.domain.min[2] + 44 * d;
+  Placing put(s);
+  put.box({7, 0, 6.3}, {8.5, 1, 7.8}, {0, 1, 0}, 57).free = of_density(50, {0.8, 0, -3});
+  c = here(c);
+  auto solver = make(c);
+  double down = 0, up = 0;
+  for (int k = 0; k < 60; ++k) {
+    solver->step(2);
+    const double v = solver->diagnose().bodies.at(0).velocity[2];
+    down = std::min(down, v), up = std::max(up, v);
+  }
+  CHECK(down < -3);
+  CHECK(up < 1.5);
+}
+
 TEST_CASE("a closed body under water of a twentieth of its density does not burst", "[slow]") {
   Case c = flat_block(20, 16, 0.02, 0);
   Scene& s = c.scene;
