@@ -132,8 +132,7 @@ TEST_CASE("a body that turns about one of its axes has turned by rate times time
   CHECK(now.spin[1] == Approx(std::numbers::pi / 2).margin(1e-9));
 }
 
-TEST_CASE("fluid and a free body keep their momentum together to rounding, with what it is owed",
-          "[slow]") {
+TEST_CASE("fluid and a free body keep their momentum together to rounding, with what it is owed") {
   const bool flat = GENERATE(false, true);
   Case c = hit(flat);
   c.scene.time.order = GENERATE(pbf::TimeOrder::first, pbf::TimeOrder::second);
