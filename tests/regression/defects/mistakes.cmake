@@ -1,5 +1,6 @@
 # Seeded mistakes: one textual change each to surfaces from files, emitters and sinks, viscosity and
-# friction, and free bodies. A test of the quick part must fail: one that does not have the tag [slow].
+# friction, and free bodies. A test of the quick part must fail: one that does not have the tag
+# [slow].
 # seeded_defect(NAME TEST FILE OLD NEW): OLD stands in FILE exactly once; TEST is the source whose
 # tests are run.
 
