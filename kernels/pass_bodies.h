@@ -192,6 +192,7 @@ struct CountSharersPass {
     }
   }
 };
+/// Behind it, over the bodies.
 template <class Real>
 struct TakeSharersPass {
   BodyRows<Real> rows;

@@ -90,7 +90,7 @@ struct ContactScene {
       const int body_k = other.body;
       if (body_k >= 0 && body_k < b) continue;  // found by the other one
       const Solid<Real>& it = at_start(k);
-      const Vec3<double> apart = wide(me.center) - wide(it.center);
+      const Vec3<double> apart = in_double(me.center) - in_double(it.center);
       const double reach =
           mine.radius + other.radius + margin + (body_k >= 0 || velocity[k].moves ? margin : 0);
       if (dot(apart, apart) > reach * reach) continue;
@@ -108,11 +108,10 @@ struct ContactScene {
   }
 
  private:
-  PBF_HD static Vec3<double> wide(Vec3<Real> a) { return {double(a.x), double(a.y), double(a.z)}; }
   PBF_HD static Vec3<Real> narrow(Vec3<double> a) { return {Real(a.x), Real(a.y), Real(a.z)}; }
   PBF_HD Vec3<double> place(const Solid<Real>& o, const ContactSpot& s) const {
     const Vec3<Real> at = narrow(vec(s.at));
-    return wide(o.center + (flat ? turned_back<2>(o, at) : turned_back<3>(o, at)));
+    return in_double(o.center + (flat ? turned_back<2>(o, at) : turned_back<3>(o, at)));
   }
   PBF_HD static void add(BodyStep& step, const Contact& c) {
     int at = step.contacts;
@@ -147,7 +146,7 @@ struct ContactScene {
     const double away = double(flat ? distance<2>(o, p) : distance<3>(o, p)) - radius;
     if (!(away < 2 * margin)) return;
     Contact c;
-    const Vec3<double> out = wide(flat ? normal<2>(o, p) : normal<3>(o, p));
+    const Vec3<double> out = in_double(flat ? normal<2>(o, p) : normal<3>(o, p));
     const Vec3<double> at = x - radius * out;
     c.gap = away;
     c.other = solid[k].body;

@@ -37,6 +37,11 @@ struct Sharers {
   double pushed = 0, stopped = 0;
 };
 
+/// The same as they are counted in an iteration.
+struct SharerSums {
+  std::int64_t pushed = 0, stopped = 0;
+};
+
 /// What a particle meets of a free body: each of those that meet it at once has a share of its mass
 /// and of its inertia (mass splitting; Tonge, Benevolenski & Voroshilov 2012).
 struct BodyShare {

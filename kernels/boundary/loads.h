@@ -27,11 +27,6 @@ struct LoadSums {
   std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
 };
 
-/// Sharers of a free body, counted in an iteration.
-struct SharerSums {
-  std::int64_t pushed = 0, stopped = 0;
-};
-
 /// Load of one wall since the last reading, per mass of a particle, in the internal frame.
 struct Load {
   double impulse[3] = {0, 0, 0};  ///< h/s

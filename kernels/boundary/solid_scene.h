@@ -233,9 +233,11 @@ PBF_HD_APART Stop<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
       // `from` may be beyond a wall by rounding: DeltaPass::place().
       const Vec3<Real> stay = start && s.before ? carried(s, k, from) : from;
       KeptOut<Real> out{last ? s.walls.path_end(from, stay) : end.x};
-      if (booked) out = kept_out(s, k, i, to, out.at);
-      move_by(load_row_of_solid(k), out.given);
-      if (booked) still = still + (out.at - to - out.given);
+      if (booked) {
+        out = kept_out(s, k, i, to, out.at);
+        move_by(load_row_of_solid(k), out.given);
+        still = still + (out.at - to - out.given);
+      }
       if (last) return {out.at, still};
       to = inside_walls(out.at);
       moved = moved || (wedged && out.entirely);

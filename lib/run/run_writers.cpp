@@ -32,6 +32,7 @@ void LogRows::take(Diagnostics& m, double dt) {
   }
   const std::vector<StageTime> since = stages_since_last_row();
   const auto& writer = run_.writer;
+  if (!writer && !run_.json) return;
   const std::vector<double> poses = pose_readings(run_.scene, m.time, m.bodies);
   run_.clock.begin();
   if (writer) {
