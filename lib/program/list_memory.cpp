@@ -46,7 +46,13 @@ StartEntries start_entries(const Scene& s, const Plan& plan) {
   return e;
 }
 
-/// The capacity after it has grown for the lists of the start, as in the solver.
+/// Rows in use at the start; emitters may bring more, up to Plan::capacity.
+std::int64_t at_start(const Plan& plan) {
+  return std::min(plan.particles + plan.images, plan.capacity);
+}
+
+/// The capacity after it has grown for the lists of the start, as in the solver. What emitters
+/// bring later comes on a lattice, with fewer neighbors.
 ListCapacity list_capacity(const Scene& s, const Plan& plan) {
   const std::int64_t n = plan.capacity;
   ListCapacity capacity = first_list_capacity(rest_neighbors(s), n);
@@ -56,7 +62,8 @@ ListCapacity list_capacity(const Scene& s, const Plan& plan) {
   for (;;) {
     const auto more = std::count_if(sample.begin(), sample.end(),
                                     [&](int entries) { return entries > 4 * capacity.first; });
-    const auto overflows = std::int64_t(double(more) * double(n) / double(sample.size()));
+    const auto overflows =
+        std::int64_t(double(more) * double(at_start(plan)) / double(sample.size()));
     if (overflows <= capacity.overflows && longest <= capacity.longest()) return capacity;
     capacity =
         larger_list_capacity(capacity, overflows, longest > capacity.longest() ? longest : 0, n);
@@ -69,7 +76,10 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
   const std::int64_t n = plan.capacity, chunks = (n + 1023) / 1024;
   const int entries = cpu_list_entries(s), threads = solver_threads(s, n);
   const StartEntries start = start_entries(s, plan);
-  add("lists", "int32", 1, std::int64_t(double(n) * std::max(double(entries), start.mean)));
+  const double emitted = 1.1 * rest_neighbors(s);
+  add("lists", "int32", 1,
+      std::int64_t(double(at_start(plan)) * std::max(double(entries), start.mean) +
+                   double(n - at_start(plan)) * emitted));
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
   add("table of lists", "int64", 3, chunks);
   add("neighbors found by each thread", "int32", 1,
