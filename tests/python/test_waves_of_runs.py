@@ -139,7 +139,7 @@ def test_run_up_is_where_the_connected_fluid_ends(flume):
             along[:len(sheet)] = np.minimum(sheet, end)
             along[len(sheet)] = end                       # no more than 2.9 d from the one before
             along[len(sheet) + 1] = end + 3.1 * d         # a drop
-            x = np.array([2, 0.01, 0]) + along[:, None] * way + d / 2 * out
+            x = np.array([2, 0.01, 0]) + along[:, None] * way - 1e-6 * out  # they touch it
             x[-1] += 4 * d * out + (end + 2 * d) * way    # spray above the slope
             first = int(place.offsets[k])
             file[place.path][first:first + n] = x

@@ -49,9 +49,11 @@ def run_up(run: Run, obstacle: str, *, level: float | None = None, gap: float = 
     the first frame, which has to be at rest). Of maxima less than `apart` (s) after each other, the
     highest counts: give half a period, as thin tongues tear and join.
 
-    Water thinner than a particle is not there at all, so heights are low by about a spacing: look at
-    the first frame, at rest. Frames have to follow each other quickly (output.every), since a maximum
-    between two is not seen.
+    Water thinner than a particle is not there at all, so heights are low by about a spacing (look at
+    the first frame, at rest), and a tongue of one layer tears: a solitary wave of 0.3 D, D = 20
+    spacings, on 1:19.85 came up 0.42, 0.47, 0.50, 0.54 D by gaps of 2, 3, 4, 5 spacings, its outermost
+    drop 0.87 D; Synolakis 1987 measured 0.55 D. Frames have to follow each other quickly
+    (output.every), since a maximum between two is not seen.
 
         up = run_up(pbf_tools.open("out/beach"), "beach"); up.highest, up.r2
     """
@@ -78,8 +80,7 @@ def run_up(run: Run, obstacle: str, *, level: float | None = None, gap: float = 
 
 def _end(x: np.ndarray, along: np.ndarray, out: np.ndarray, d: float, gap: float) -> float:
     """The place along the slope up to which fluid is connected, from its lowest place on."""
-    above = x @ out
-    there = np.sort(x[(above >= 0) & (above <= NEAR * d)] @ along)
+    there = np.sort(x[np.abs(x @ out) <= NEAR * d] @ along)  # particles on it may round to below
     if not len(there):
         return math.nan
     holes = np.flatnonzero(np.diff(there) > gap * d)
