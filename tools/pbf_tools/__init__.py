@@ -10,7 +10,8 @@ from .errors import (BadInput, Diverged, FileError, MissingPackage, NotThere, Pb
 if TYPE_CHECKING:
     from .bodies import Body
     from .fields import Field, Frame
-    from .run_file import Gauge, Run, open
+    from .gauges import Gauge
+    from .run_file import Run, open
     from .simulate import plan, run
     from .sweep import Batch, batch, read_batch
     from .table import Table, read_csv
@@ -22,7 +23,7 @@ __version__ = "0.1.0"
 
 # Where the rest is. It needs numpy and h5py, and is read when it is asked for: the command line
 # must come as far as a message when they are not installed.
-_PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "run_file",
+_PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "gauges",
            "Run": "run_file", "open": "run_file", "plan": "simulate", "run": "simulate",
            "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table",
            "read_csv": "table"}

@@ -25,6 +25,7 @@ COMMANDS = {
     "plot-time": "time per particle and update against the number of particles",
     "video": "film from the pictures of a run",
     "plot-compare": "the report of pbf compare: diagrams and tables",
+    "waves": "incident and reflected waves at gauges: heights, lengths, spectra",
     "compare": "differences of two runs",
     "to-csv": "frames, the log or a track as CSV; frames as extended XYZ",
     "to-npz": "runs as NumPy files: positions, ids, types, times",

@@ -10,7 +10,6 @@ the one after the best shift of T.
 from __future__ import annotations
 
 import argparse
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +18,7 @@ from . import gaps, style
 from .errors import BadInput
 from .front_data import REFERENCES
 from .logs import RUN_HELP, labels, read_run, short_names
+from .scene_text import gravity_in
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
@@ -93,7 +93,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
         r = read_run(path)
         if not len(r.frames):
             raise BadInput(f"{path}: no frame yet, so the column is not known")
-        gravity = _gravity(r.scene, path)
+        gravity = gravity_in(r.scene, path)
         up = int(np.argmax(np.abs(gravity)))
         if up == axis:
             raise BadInput(f"{path}: gravity points along {args.axis}; choose another --axis")
@@ -117,13 +117,6 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
     ratio = height / width
     return Front(name, title, ratio, log["time"][:end] * np.sqrt(ratio * g / width) + args.shift,
                  (x[:end] - back) / width)
-
-
-def _gravity(scene: str, path: str) -> np.ndarray:
-    match = re.search(r"^gravity: *\[([^]]*)\]", scene, re.MULTILINE)
-    if not match:
-        raise BadInput(f"{path}: the scene in it says no gravity; make a table of the log (to-csv)")
-    return np.array([float(v) for v in match[1].split(",")])
 
 
 def run(args: argparse.Namespace) -> int:

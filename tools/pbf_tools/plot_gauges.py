@@ -16,8 +16,8 @@ from matplotlib.lines import Line2D
 
 from . import gaps, style
 from .errors import BadInput, UnknownName, note, unknown
+from .gauges import Gauge
 from .logs import RUN_HELP, labels, read_run
-from .run_file import Gauge
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,53 +14,12 @@ from . import index
 from .bodies import Bodies, read_bodies
 from .errors import BadInput, UnknownName, unknown
 from .fields import Field, Frames
+from .gauges import Gauges, read_gauges
 from .run_path import run_path
 from .scene_text import name_in
 from .table import Table
 
 T = TypeVar("T")
-
-
-@dataclass(frozen=True, repr=False)
-class Gauge:
-    """Readings of a gauge: `value` has shape (readings,), of a velocity (readings, 3). `further` has
-    what else its kind reads, by name, also as attributes: pressures have the `peak` of single
-    updates, flows the `total` since the start (kg); None where a gauge has none.
-
-    >>> gauge = Gauge("H", "level", "x = 0 m", "m", np.array([0.0, 1.0]), np.array([0.5, 0.25]))
-    >>> time, value = gauge
-    >>> value
-    array([0.5 , 0.25])
-    """
-
-    name: str
-    kind: str  # level, velocity, flow, pressure ...
-    place: str
-    unit: str
-    time: np.ndarray
-    value: np.ndarray
-    further: dict[str, np.ndarray] = field(default_factory=dict)
-    further_units: dict[str, str] = field(default_factory=dict)
-
-    def __getattr__(self, name: str) -> np.ndarray | None:
-        further = self.__dict__.get("further", {})
-        if name not in further and name not in ("total", "peak"):
-            raise AttributeError(unknown("attribute", name, further))
-        return further.get(name)
-
-    def __iter__(self) -> Iterator[np.ndarray]:
-        return iter((self.time, self.value))
-
-    def __repr__(self) -> str:
-        return f"<gauge {self.name}: {self.kind} ({self.unit}) at {self.place}, " \
-               f"{len(self.time)} readings>"
-
-
-class Gauges(dict):
-    """Gauges by name; the name of one that is not there gets a suggestion."""
-
-    def __missing__(self, name: str) -> Gauge:
-        raise UnknownName(unknown("gauge", name, self))
 
 
 class Run:
@@ -215,7 +173,7 @@ class Run:
         >>> open("run.vtkhdf").gauges
         {}
         """
-        return self._read(_gauges, "cannot read the gauges")
+        return self._read(read_gauges, "cannot read the gauges")
 
     @property
     def bodies(self) -> Bodies:
@@ -273,27 +231,6 @@ def _log(file: h5py.File) -> Table:
     order = ["time"] + [name for name in data if name != "time"]
     return Table({name: data[name][:rows] for name in order if name in data},
                  {name: index._text(d.attrs.get("units", "1")) for name, d in data.items()})
-
-
-def _gauges(file: h5py.File) -> Gauges:
-    group = file.get("pbf/gauges")
-    if group is None:
-        return Gauges()
-    more = {part: d for part, d in group.items() if isinstance(d, h5py.Group)}
-    data = {name: d for name, d in group.items()
-            if isinstance(d, h5py.Dataset) and name not in ("time", "update")}
-    every = [group["time"], *data.values(), *(d for g in more.values() for d in g.values())]
-    # A process killed while it wrote them may leave columns of different lengths.
-    rows = min(len(d) for d in every)
-    time = group["time"][:rows]
-    return Gauges(
-        {name: Gauge(name, index._text(d.attrs.get("kind", "")),
-                     index._text(d.attrs.get("place", "")), index._text(d.attrs.get("units", "1")),
-                     time, d[:rows],
-                     {part: g[name][:rows] for part, g in more.items() if name in g},
-                     {part: index._text(g[name].attrs.get("units", "1"))
-                      for part, g in more.items() if name in g})
-         for name, d in data.items()})
 
 
 def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip

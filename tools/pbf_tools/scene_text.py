@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import BadInput
+from .errors import BadInput, UnknownName, unknown
 from .table import write_text
 
 Scene = Mapping[str, Any] | str | os.PathLike[str]
@@ -60,6 +60,42 @@ def name_in(resolved: str) -> str:
         return ""
     name = said[1].strip()
     return str(json.loads(name)) if name.startswith('"') else name
+
+
+def gravity_in(resolved: str, path: str) -> np.ndarray:
+    """Gravity (3,), m/s^2, of a scene with every default written out; `path` for the error.
+
+    >>> gravity_in("gravity: [0, 0, -9.81]\\n", "run").tolist()
+    [0.0, 0.0, -9.81]
+    """
+    match = re.search(r"^gravity: *\[([^]]*)\]", resolved, re.MULTILINE)
+    if not match:
+        raise BadInput(f"{path}: the scene in it says no gravity")
+    return np.array([float(v) for v in match[1].split(",")])
+
+
+def plane_in(resolved: str, name: str, path: str) -> tuple[np.ndarray, np.ndarray]:
+    """Point (m) and normal, (3,) each, of an obstacle that is a plane and stands still, of a scene
+    with every default written out. BadInput, naming `path`, for one that is not there or is another.
+
+    >>> plane_in("obstacles:\\n  - {name: a, shape: plane, point: [4, 0, 0], normal: [-1, 0, 2]}",
+    ...          "a", "run")
+    (array([4., 0., 0.]), array([-1.,  0.,  2.]))
+    """
+    block = re.search(r"^obstacles:\n((?:[ -].*\n?)*)", resolved, re.MULTILINE)
+    entry = r'^ +- \{name: ("(?:[^"\\]|\\.)*"|[^,"]*), shape: (\w+)(.*)$'
+    found = {str(json.loads(said)) if said.startswith('"') else said: (shape, rest)
+             for said, shape, rest in re.findall(entry, block[1] if block else "", re.MULTILINE)}
+    if name not in found:
+        raise UnknownName(f"{path}: {unknown('obstacle', name, found)}")
+    shape, rest = found[name]
+    vectors = dict(re.findall(r"\b(point|normal): \[([^]]*)\]", rest))
+    if shape != "plane" or "motion:" in rest or len(vectors) < 2:
+        raise BadInput(f"{path}: obstacle {name} is a {shape}{' that moves' * ('motion:' in rest)}; "
+                       "this is for planes that stand still")
+    point, normal = (np.array([float(v) for v in vectors[key].split(",")])
+                     for key in ("point", "normal"))
+    return point, normal
 
 
 def settings(overrides: Mapping[str, Any], path: str = "") -> dict[str, Any]:
