@@ -109,8 +109,10 @@ def draw(axes, readings: dict[str, Gauge], over: list[Measured], peaks: bool) ->
     style.title(axes, first.name, first.kind + (f", {first.place}" if len(places) == 1 else ""))
     axes.set_ylabel(f"{first.kind} ({first.unit})")
     for k, data in enumerate(over):
-        axes.plot(data.time, data.value, **_look_of_measured(k, data.time),
-                  label=f"measured ({data.column})")
+        look = _look_of_measured(k, data.time)
+        if alone and data.component is not None:
+            look["color"] = style.COLORS[data.component]
+        axes.plot(data.time, data.value, label=f"measured ({data.column})", **look)
     for k, (name, g) in enumerate(readings.items()):
         gaps.tell(f"{first.name}, {name}", g.value, "readings", g.kind)
         if g.value.ndim == 2:
@@ -124,7 +126,7 @@ def draw(axes, readings: dict[str, Gauge], over: list[Measured], peaks: bool) ->
             axes.plot(g.time, g.peak, color=style.COLORS[1 if alone else k % 8], linewidth=0.8,
                       alpha=0.7, label="run, " + PEAK, linestyle="-" if alone else ":")
     if alone and len(axes.lines) > 1:
-        axes.legend()
+        style.side_legend(axes) if len(axes.lines) > 4 else axes.legend()
     for data in over:
         for name, g in readings.items():
             rms, correlation, n = measured.deviation(g, data, name)
