@@ -11,9 +11,6 @@ Half a minute to a minute. TUTORIAL_SPACING sets another size (m), TUTORIAL_OUT 
 import os
 from pathlib import Path
 
-import matplotlib.pyplot as plt
-import numpy as np
-
 import pbf_tools
 
 out = Path(os.environ.get("TUTORIAL_OUT", "out/tutorial"))
@@ -40,31 +37,29 @@ grid = {"time.step": [0.004, 0.002, 0.001], "solver.iterations": [1, 2, 4, 8]}
 table = pbf_tools.batch(scene, grid, out / "sweep", threads=1)
 print(len(table), "runs:", ", ".join(table["name"].tolist()[:2]), "...")
 
-# %% The error of a run: its mean compression (%), averaged over time. The time: its stages (s).
-error = np.array([100 * r.log["compression_mean"].mean() for r in table.runs])
-seconds = np.array([sum(r.log[name].sum() for name in r.log if name.startswith("stage/"))
-                    for r in table.runs])
-step, iterations = table["time.step"], table["solver.iterations"]
+# %% The error of a run: its mean compression, averaged over time. Its time: that of the stages.
+table["error"] = [100 * r.log["compression_mean"].mean() for r in table.runs]
+table["run_time"] = [sum(r.log[name].sum() for name in r.log if name.startswith("stage/"))
+                     for r in table.runs]
+table.units |= {"error": "%", "run_time": "s"}
 
 # %% Which one would you take? The one with the least error below a time.
-limit = 2 * seconds.min()
-best = np.flatnonzero(seconds <= limit)[error[seconds <= limit].argmin()]
-print(f"least error below {limit:.2g} s: {error[best]:.2g} % with a step of {step[best]:g} s and "
-      f"{iterations[best]:g} iterations")
+limit = 2 * table["run_time"].min()
+fast = table.where(table["run_time"] <= limit)
+best = fast["error"].argmin()
+print(f"least error below {limit:.2g} s: {fast['error'][best]:.2g} % with a step of "
+      f"{fast['time.step'][best]:g} s and {fast['solver.iterations'][best]:g} iterations")
 
-# %% The same as a figure.
-fig, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
-for value in np.unique(step)[::-1]:
-    rows = np.flatnonzero(step == value)
-    line, = axes.plot(seconds[rows], error[rows], "o-", label=f"step {1000 * value:g} ms")
-    for k in rows:
-        axes.annotate(f"{iterations[k]:g}", (seconds[k], error[k]), textcoords="offset points",
-                      xytext=(5, 4), color=line.get_color(), fontsize=8)
-axes.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="mean compression (%)",
-         title=f"Numbers: iterations; {plan['particles']} particles, {run.info['device']}")
-axes.xaxis.set_major_formatter("{x:g}")
-axes.xaxis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:g}"[-1] in "2357" else "")
-axes.grid(which="both", alpha=0.3)
-axes.legend()
-fig.savefig(out / "error_against_time.png", dpi=130)
+# %% The same as a figure. pbf_tools.plot has a function for every plot command; a notebook shows what
+# they return.
+fig = pbf_tools.plot.batch(table, x="run_time", y="error", log=True,
+                           title=f"{plan['particles']} particles, {run.info['device']}")
+fig.savefig(out / "error_against_time.png")
 print(out / "error_against_time.png")
+fig  # noqa: B018
+
+# %% Where the energy of the first run went.
+fig = pbf_tools.plot.energy(run)
+fig.savefig(out / "energy.png")
+print(fig.told[0])
+fig  # noqa: B018

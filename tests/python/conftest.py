@@ -48,6 +48,27 @@ def minimal(pbf, tmp_path_factory):
     return folder / "run/run.vtkhdf"
 
 
+@pytest.fixture(scope="session")
+def gauged(pbf, tmp_path_factory):
+    """run.vtkhdf of a small dam break with a gauge of every kind, read every 0.01 s,
+    and loads on its walls, every 0.02 s."""
+    folder = tmp_path_factory.mktemp("gauges")
+    (folder / "s.yaml").write_text(
+        "domain: {min: [0, 0, 0], max: [1, 0.3, 0.6], loads: true}\n"
+        "fluid: {spacing: 0.05}\n"
+        "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.3, 0.5]}]\n"
+        "gauges:\n"
+        "  - {name: H, kind: level, at: [0.2, 0.15]}\n"
+        "  - {name: U, kind: velocity, at: [0.2, 0.15, 0.1]}\n"
+        "  - {name: Q, kind: flow, center: [0.5, 0.15, 0.3], normal: [1, 0, 0], size: [0.3, 0.6]}\n"
+        "  - {name: P, kind: pressure, on: z_min, at: [0.2, 0.15, 0], radius: 0.1}\n"
+        "time: {step: 0.002, end: 0.3}\n"
+        "output: {every: 0.1, gauges_every: 0.01}\n")
+    subprocess.run([pbf, "run", "s.yaml", "--quiet", "--out", "run"], check=True, cwd=folder,
+                   capture_output=True)
+    return folder / "run/run.vtkhdf"
+
+
 @pytest.fixture
 def tools(capsys):
     """tools("to-csv", ...) -> (exit code, stdout, stderr), as from a shell."""

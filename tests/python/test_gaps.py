@@ -63,13 +63,15 @@ def test_a_gauge_without_fluid_is_told_with_the_number_of_readings(gapped, tools
 
 
 def test_measured_values_without_a_number_are_told_those_with_gaps_not(gapped, tools, tmp_path):
-    (tmp_path / "e.csv").write_text("t,H,none\n0,0.5,\n0.1,,\n0.2,0.4,\n")
+    rows = "".join(f"{0.02 * k},{'' if k == 3 else 0.5},,\n" for k in range(12))
+    (tmp_path / "e.csv").write_text("t,H,none,H_mm\n" + rows)
     words = ("plot-gauges", gapped, "--gauge", "H", "--experiment", tmp_path / "e.csv", "-o",
              tmp_path / "a.png")
     code, out, err = tools(*words)
-    assert code == 0 and err == "" and "over 2 points" in out
+    assert code == 0 and "H: H: " in out and "over 11 points" in out and out.count("RMS") == 1
+    assert err == ("pbf_tools: note: H, measured (H_mm): nothing to draw, nan in all 12 rows\n")
     code, out, err = tools(*words, "--column", "H=none")
-    assert code == 0 and "H, measured (none): nothing to draw, nan in all 3 rows" in err
+    assert code == 2 and "column none has 0 values, of which 0 are within" in err and not out
 
 
 def test_a_batch_says_which_column_is_missing_and_why(pbf, tools, tmp_path):

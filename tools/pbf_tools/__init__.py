@@ -8,6 +8,7 @@ from .errors import (BadInput, Diverged, FileError, MissingPackage, NotThere, Pb
                      Stopped, ToolError, UnknownName)
 
 if TYPE_CHECKING:
+    from . import plot
     from .bodies import Body
     from .fields import Field, Frame
     from .gauges import Gauge
@@ -18,21 +19,23 @@ if TYPE_CHECKING:
 
 __all__ = ["BadInput", "Batch", "Body", "Diverged", "Field", "FileError", "Frame", "Gauge",
            "MissingPackage", "NotThere", "PbfError", "PbfWarning", "Run", "Stopped", "Table",
-           "ToolError", "UnknownName", "batch", "open", "plan", "read_batch", "read_csv", "run"]
+           "ToolError", "UnknownName", "batch", "open", "plan", "plot", "read_batch", "read_csv",
+           "run"]
 __version__ = "0.1.0"
 
-# Where the rest is. It needs numpy and h5py, and is read when it is asked for: the command line
-# must come as far as a message when they are not installed.
+# Where the rest is; "" for a module. It needs numpy and h5py, and is read when it is asked for: the
+# command line must come as far as a message when they are not installed.
 _PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "gauges",
            "Run": "run_file", "open": "run_file", "plan": "simulate", "run": "simulate",
            "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table",
-           "read_csv": "table"}
+           "read_csv": "table", "plot": ""}
 
 
 def __getattr__(name: str) -> Any:
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module("." + _PLACES[name], __name__), name)
+    place = import_module("." + (_PLACES[name] or name), __name__)
+    value = getattr(place, name) if _PLACES[name] else place
     globals()[name] = value
     return value
 

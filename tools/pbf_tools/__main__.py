@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import importlib
 import os
 import sys
@@ -27,7 +28,7 @@ COMMANDS = {
     "plot-compare": "the report of pbf compare: diagrams and tables",
     "waves": "incident and reflected waves at gauges: heights, lengths, spectra",
     "compare": "differences of two runs",
-    "to-csv": "frames, the log or a track as CSV; frames as extended XYZ",
+    "to-csv": "frames, the log, gauges, loads or a track as CSV; frames as extended XYZ",
     "to-npz": "runs as NumPy files: positions, ids, types, times",
     "to-lagrangebench": "a data set for learning in the layout of LagrangeBench",
     "surface": "surface of the fluid as triangles",
@@ -74,7 +75,8 @@ def parser(command: str | None = None) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=summary, description=module.__doc__,
                                   epilog=module.EXAMPLE, formatter_class=Formatter)
         module.add_arguments(sub)
-        sub.set_defaults(run=module.run)
+        sub.set_defaults(run=module.run if hasattr(module, "run") else
+                         functools.partial(module.style.command, module.figure))
     return top
 
 

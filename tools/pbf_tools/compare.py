@@ -117,6 +117,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+@style.look()
 def _draw(a: Run, b: Run, table: Table, args: argparse.Namespace) -> None:
     fig, panels = style.figure(3, 1, size=(6.4, 7.2), sharex=True)
     distance, compression, energy = panels[:, 0]

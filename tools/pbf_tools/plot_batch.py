@@ -8,6 +8,7 @@ stand beside them, and the other keys make the curves. Runs that did not finish 
 from __future__ import annotations
 
 import argparse
+import copy
 from pathlib import Path
 
 import numpy as np
@@ -47,9 +48,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     style.add_output(parser, "batch.png")
 
 
-def read_summary(path: str) -> Table:
-    """The summary of a batch, given by its file or its folder; scenes by their names."""
-    table = read_batch(path)
+def read_summary(batch: str | Batch) -> Batch:
+    """The summary of a batch, given by its file, its folder or itself; scenes by their names."""
+    table = copy.copy(batch) if isinstance(batch, Batch) else read_batch(batch)
     if "scene" in table:
         paths = table["scene"].tolist()
         names = scene_names(table, list(dict.fromkeys(paths)))
@@ -113,8 +114,9 @@ def finished(table: Table) -> Table:
     return rows
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     table = read_summary(args.summary)
+    args.summary = table.out if isinstance(args.summary, Batch) else args.summary
     chosen = args.series.split(",") if args.series else None
     need(table, [args.x, args.y, *(chosen or ())], args.summary)
     if table[args.y].dtype.kind != "f":
@@ -138,8 +140,7 @@ def run(args: argparse.Namespace) -> int:
     what = "Error against run time" if (args.x, args.y) == (RUN_TIME, ERROR) else \
         f"{_words(args.y)} against {_words(args.x)}"
     style.title(axes, args.title or what[0].upper() + what[1:], _detail(table, along))
-    style.save(fig, args)
-    return 0
+    return fig
 
 
 def _drawable(table: Table, args: argparse.Namespace, log_x: bool, log_y: bool) -> Table:
@@ -169,7 +170,7 @@ def _drawable(table: Table, args: argparse.Namespace, log_x: bool, log_y: bool) 
 
 def _curves(axes, table: Table, args: argparse.Namespace, series: list[str],
             along: str | None, over_key: bool) -> None:
-    """A curve for each combination of the series' values; prints its points."""
+    """A curve for each combination of the series' values; tells its points."""
     names = [", ".join(_value(table, key, row) for key in series) for row in range(len(table))]
     first = {name: tuple(table[key][row] for key in series) for row, name in enumerate(names)}
     order = np.argsort(table[along or args.x], kind="stable")
@@ -184,8 +185,10 @@ def _curves(axes, table: Table, args: argparse.Namespace, series: list[str],
                 axes.annotate(_text(table[labels][row]), (a, b), textcoords="offset points",
                               xytext=(5, 4), fontsize=8, color=style.cycle(k)["color"])
             words = [w for w in (name, labels and _value(table, labels, row)) if w]
-            print(f"{args.x} {_quantity(table, args.x, a)}  {args.y} {_quantity(table, args.y, b)}"
-                  + ("  " + ", ".join(words) if words else ""))
+            axes.figure.tell(
+                f"{args.x} {_quantity(table, args.x, a)}  {args.y} {_quantity(table, args.y, b)}"
+                + ("  " + ", ".join(words) if words else ""),
+                **{args.x: a, args.y: b, "which": ", ".join(words)})
     if any(names):
         style.side_legend(axes)
 

@@ -105,7 +105,7 @@ def draw_diagram(axes, curves: list[dict]) -> None:
     style.side_legend(axes)
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     report = read_report(args.report)
     diagrams: dict[str, list[dict]] = {}
     for curve in report["curves"]:
@@ -126,6 +126,5 @@ def run(args: argparse.Namespace) -> int:
         for k, (line, look) in enumerate(lines):
             axes.text(0, k + 0.5, line, va="center", fontsize=8, parse_math=False, **look)
     style.figure_title(fig, args.title or conclusion(report))
-    print(conclusion(report))
-    style.save(fig, args)
-    return 0
+    fig.tell(conclusion(report), same=report["same"], stage=report["stage"])
+    return fig

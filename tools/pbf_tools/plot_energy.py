@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     style.add_output(parser, "energy.png")
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     logs = [read_log(path, COLUMNS) for path in args.runs]
     for path, log in zip(args.runs, logs):
         log.table = gaps.whole_rows(log.table, COLUMNS, path)
@@ -37,8 +37,7 @@ def run(args: argparse.Namespace) -> int:
         detail = _many(axes, logs, args.runs)
     axes.set_xlabel("time (s)")
     style.title(axes, args.title or "Energy", detail)
-    style.save(fig, args)
-    return 0
+    return fig
 
 
 def _one(axes, log: Log) -> str:
@@ -51,8 +50,10 @@ def _one(axes, log: Log) -> str:
     axes.set_ylim(bottom=min(0, float(np.nanmin(potential))))
     axes.legend()
     total = kinetic + potential
-    print(f"total energy: {total[0]:.6g} J at the start, {np.nanmax(total):.6g} J at most, "
-          f"{total[-1]:.6g} J at the end")
+    most = np.nanmax(total)
+    axes.figure.tell(f"total energy: {total[0]:.6g} J at the start, {most:.6g} J at most, "
+                     f"{total[-1]:.6g} J at the end", run=log.name, start=total[0], most=most,
+                     end=total[-1])
     return log.title
 
 
@@ -64,8 +65,10 @@ def _many(axes, logs: list[Log], paths: list[str]) -> str:
                            "drawn relative to it; draw this run by itself")
         axes.plot(log.table["time"], total / total[0], label=label, color=style.COLORS[k % 8],
                   linestyle=("-", "--", "-.", ":")[k % 4])
-        print(f"{label:24} energy, relative to the start: {np.nanmax(total) / total[0]:.6g} at "
-              f"most, {total[-1] / total[0]:.6g} at the end")
+        most = np.nanmax(total)
+        axes.figure.tell(f"{label:24} energy, relative to the start: {most / total[0]:.6g} at "
+                         f"most, {total[-1] / total[0]:.6g} at the end", run=label, start=total[0],
+                         most=most, end=total[-1])
     axes.axhline(1, color=style.GREY, linewidth=0.8)
     axes.set_ylabel("total energy / energy at the start (1)")
     axes.legend()

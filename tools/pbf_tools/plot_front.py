@@ -119,7 +119,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
                  (x[:end] - back) / width)
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     fronts = [read_front(path, args) for path in args.runs]
     names_of_runs = labels(args.runs, [front.name for front in fronts])
 
@@ -144,8 +144,9 @@ def run(args: argparse.Namespace) -> int:
                 continue
             rms, n = deviation(front.t, front.z, data)
             shift, least = best_shift(front.t, front.z, data)
-            print(f"{label}: {REFERENCES[name].label}: RMS deviation of Z {rms:.3f} over {n} "
-                  f"points; {least:.3f} with T shifted by {shift:+.2f}")
+            fig.tell(f"{label}: {REFERENCES[name].label}: RMS deviation of Z {rms:.3f} over {n} "
+                     f"points; {least:.3f} with T shifted by {shift:+.2f}", run=label,
+                     reference=name, rms=rms, points=n, shift=shift, rms_shifted=least)
     last = max(f.t[-1] for f in fronts)
     axes.set(xlim=(0, 1.15 * last), ylim=(0.9, 1.15 * max(f.z.max() for f in fronts)))
     axes.set_xlabel(r"$T = t\,\sqrt{n^2 g/a}$ (1)")
@@ -154,5 +155,4 @@ def run(args: argparse.Namespace) -> int:
     ratios = " and ".join(f"{r:.3g}" for r in sorted({round(f.ratio, 2) for f in fronts}))
     style.title(axes, args.title or f"Dam-break front, column {ratios} times as high as wide",
                 fronts[0].title if len(fronts) == 1 else "")
-    style.save(fig, args)
-    return 0
+    return fig

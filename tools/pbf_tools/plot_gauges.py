@@ -3,8 +3,9 @@
 There is one panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks.
 Several runs share the panels of the gauges that all of them have, one colour each. An experiment
 is a CSV table with a time column; the RMS deviation from it, the correlation and the number of
-points compared are printed. A column named like a gauge ("H2", "H2_m") belongs to it; --column
-assigns other columns.
+points compared are printed. A column named like a gauge ("H2", "H2_mm", "U_x_m_s") belongs to it;
+--column assigns other columns. Units at the end of a name are converted, of times too ("t_ms");
+a column without one is in the gauge's unit.
 """
 
 from __future__ import annotations
@@ -14,17 +15,19 @@ import argparse
 import numpy as np
 from matplotlib.lines import Line2D
 
-from . import gaps, style
+from . import gaps, measured, style
 from .errors import BadInput, UnknownName, note, unknown
 from .gauges import Gauge
 from .logs import RUN_HELP, labels, read_run
-from .table import Table, need, read_csv
+from .measured import Measured
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-gauges out/dam_break_over_box -o gauges.png
   python -m pbf_tools plot-gauges out/coarse out/fine --gauge H2 -o levels.png
   python -m pbf_tools plot-gauges run.vtkhdf --experiment heights.csv --column H2=h2 --column H4=h4
-  python -m pbf_tools plot-gauges run.vtkhdf --gauge P1 --experiment p.csv --column p1 --shift 0.02"""
+  python -m pbf_tools plot-gauges run.vtkhdf --gauge P1 --experiment p.csv --column p1 --shift 0.02
+  python -m pbf_tools plot-gauges out/sloshing --gauge eta --experiment surge.csv \\
+      --column eta_mm --time-scale 1.3 --offset 0.6       (time in periods of 1.3 s)"""
 
 DASHES = ("-", "--", "-.")  # of the components of a velocity
 PEAK = "peak of an update"
@@ -34,85 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs="+", metavar="RUN", help=f"{RUN_HELP}, with gauges")
     parser.add_argument("--gauge", action="append", metavar="NAME",
                         help="gauge to draw (repeatable; default: all that every run has)")
-    parser.add_argument("--experiment", action="append", default=[], metavar="FILE",
-                        help="CSV table of measured values (repeatable)")
-    parser.add_argument("--column", action="append", default=[], metavar="[GAUGE=]NAME",
-                        help="column of a table that belongs to a gauge (repeatable; with one "
-                             "gauge drawn its name may be left out)")
-    parser.add_argument("--time-column", metavar="NAME",
-                        help="time column of the tables (default: the first named t, time ..., else "
-                             "the first)")
-    parser.add_argument("--scale", type=float, default=1, metavar="F",
-                        help="multiply measured values, 1000 for kPa (default 1)")
-    parser.add_argument("--shift", type=float, default=0, metavar="S",
-                        help="add this to the measured times (s; default 0)")
+    measured.add_arguments(parser)
     parser.add_argument("--peaks", action="store_true",
                         help="also draw the largest values of single updates (pressures)")
     style.add_output(parser, "gauges.png")
-
-
-def deviation(gauge: Gauge, t: np.ndarray, y: np.ndarray) -> tuple[float, float, int]:
-    """RMS of reading - measured at the measured times that the run covers, the correlation of the
-    two, and how many they are.
-
-    >>> line = Gauge("a", "level", "", "m", np.array([0., 1., 2.]), np.array([0., 2., 4.]))
-    >>> rms, correlation, n = deviation(line, np.array([0.5, 1., 9.]), np.array([2., 3., 1.]))
-    >>> round(rms, 6), round(correlation, 6), n
-    (1.0, 1.0, 2)
-    """
-    inside = (t >= gauge.time[0]) & (t <= gauge.time[-1]) & np.isfinite(y)
-    run = np.interp(t[inside], gauge.time, gauge.value)
-    good = np.isfinite(run)
-    run, y = run[good], y[inside][good]
-    if not len(y):
-        return float("nan"), float("nan"), 0
-    varied = len(y) > 1 and np.std(run) > 0 and np.std(y) > 0
-    correlation = float(np.corrcoef(run, y)[0, 1]) if varied else float("nan")
-    return float(np.sqrt(np.mean((run - y) ** 2))), correlation, len(y)
-
-
-def time_column(table: Table, wanted: str | None, path: str) -> str:
-    if wanted:
-        need(table, [wanted], path)
-        return wanted
-    names = [name for name in table if name.split("_")[0].lower() in ("t", "time")]
-    return names[0] if names else next(iter(table))
-
-
-def measured(args: argparse.Namespace, gauges: list[Gauge]) -> dict[str, list]:
-    """Of each gauge: (file, times, values)."""
-    wanted: dict[str, list[str]] = {}
-    names = [g.name for g in gauges]
-    units = {g.name: g.unit for g in gauges}
-    for text in args.column:
-        gauge, equals, column = text.partition("=")
-        if not equals:
-            if len(gauges) > 1 and text not in names:
-                raise BadInput(f"--column {text}: {len(gauges)} gauges are drawn; say to which it "
-                               f"belongs, --column {names[0]}={text}")
-            gauge, column = (text if text in names else names[0]), text
-        if gauge not in names:
-            raise UnknownName(f"--column {text}: {unknown('drawn gauge', gauge, names)}")
-        wanted.setdefault(gauge, []).append(column)
-    out: dict[str, list] = {name: [] for name in names}
-    tables = [(path, read_csv(path)) for path in args.experiment]
-    for name in names:
-        for column in wanted.get(name, [name, f"{name}_{units[name]}"]):
-            with_it = [(path, table) for path, table in tables if column in table.columns]
-            if name in wanted and not with_it:
-                raise BadInput(f"no column {column} in {', '.join(args.experiment) or 'any table'}"
-                               + ("" if tables else "; give --experiment FILE"))
-            for path, table in with_it:
-                need(table, [column], path)
-                t = table[time_column(table, args.time_column, path)]
-                if t.dtype.kind != "f" or table[column].dtype.kind != "f":
-                    raise BadInput(f"{path}: column {column} or its times are no numbers")
-                out[name].append((column, t + args.shift, args.scale * table[column]))
-    if args.experiment and not any(out.values()):
-        raise BadInput(f"{', '.join(args.experiment)}: no column is named as a gauge "
-                       f"({', '.join(names)}); give --column GAUGE=NAME, of "
-                       f"{', '.join(c for _, table in tables for c in table)}")
-    return out
 
 
 def choose(runs: list[tuple[str, dict[str, Gauge]]], wanted: list[str] | None) -> list[str]:
@@ -143,11 +71,11 @@ def choose(runs: list[tuple[str, dict[str, Gauge]]], wanted: list[str] | None) -
     return names
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     files = [read_run(path) for path in args.runs]
     runs = [(path, file.gauges) for path, file in zip(args.runs, files)]
     names, called = choose(runs, args.gauge), labels(args.runs, [file.name for file in files])
-    over = measured(args, [runs[0][1][name] for name in names])
+    over = measured.of_gauges(args, [runs[0][1][name] for name in names])
     columns = 1 if len(names) < 4 else 2
     rows = (len(names) + columns - 1) // columns
     wide = 1.6 if len(runs) > 1 else 0  # for the legend
@@ -170,21 +98,21 @@ def run(args: argparse.Namespace) -> int:
     scenes = ", ".join(dict.fromkeys(file.name for file in files))
     fig.suptitle(args.title or (next(iter(titles)) if len(titles) == 1 else
                                 f"{scenes}: {len(runs)} runs"), fontsize=9)
-    style.save(fig, args)
-    return 0
+    return fig
 
 
-def draw(axes, readings: dict[str, Gauge], measured: list, peaks: bool) -> None:
+def draw(axes, readings: dict[str, Gauge], over: list[Measured], peaks: bool) -> None:
     """The panel of a gauge: its readings in every run, by the run's name, over measured values. One
     run has a colour for each component of a velocity, several have one for each run."""
     first, alone = next(iter(readings.values())), len(readings) == 1
     places = {g.place for g in readings.values()}
     style.title(axes, first.name, first.kind + (f", {first.place}" if len(places) == 1 else ""))
     axes.set_ylabel(f"{first.kind} ({first.unit})")
-    for k, (column, t, y) in enumerate(measured):
-        axes.plot(t, y, **_look_of_measured(k, t), label=f"measured ({column})")
-        if np.isnan(y).all():  # single gaps are usual in a table of several gauges
-            gaps.tell(f"{first.name}, measured ({column})", y)
+    for k, data in enumerate(over):
+        look = _look_of_measured(k, data.time)
+        if alone and data.component is not None:
+            look["color"] = style.COLORS[data.component]
+        axes.plot(data.time, data.value, label=f"measured ({data.column})", **look)
     for k, (name, g) in enumerate(readings.items()):
         gaps.tell(f"{first.name}, {name}", g.value, "readings", g.kind)
         if g.value.ndim == 2:
@@ -198,12 +126,17 @@ def draw(axes, readings: dict[str, Gauge], measured: list, peaks: bool) -> None:
             axes.plot(g.time, g.peak, color=style.COLORS[1 if alone else k % 8], linewidth=0.8,
                       alpha=0.7, label="run, " + PEAK, linestyle="-" if alone else ":")
     if alone and len(axes.lines) > 1:
-        axes.legend()
-    for column, t, y in measured if first.value.ndim == 1 else ():
+        style.side_legend(axes) if len(axes.lines) > 4 else axes.legend()
+    for data in over:
         for name, g in readings.items():
-            rms, correlation, n = deviation(g, t, y)
-            print(f"{g.name}{'' if alone else ', ' + name}: {column}: RMS deviation {rms:.4g} "
-                  f"{g.unit}, correlation {correlation:.3f} over {n} points")
+            rms, correlation, n = measured.deviation(g, data, name)
+            which = "" if data.component is None else "_" + "xyz"[data.component]
+            alike = "no correlation, as one is constant" if np.isnan(correlation) else \
+                f"correlation {correlation:.3f}"
+            axes.figure.tell(f"{g.name}{which}{'' if alone else ', ' + name}: {data.column}: RMS "
+                             f"deviation {rms:.4g} {g.unit}, {alike} over {n} points",
+                             gauge=g.name + which, run=name, column=data.column, rms=rms,
+                             unit=g.unit, correlation=correlation, points=n)
 
 
 def _look_of_measured(k: int, t: np.ndarray) -> dict[str, object]:
@@ -213,8 +146,8 @@ def _look_of_measured(k: int, t: np.ndarray) -> dict[str, object]:
     return {**look, "linewidth": 1, "linestyle": ("-", "--", "-.", ":")[k % 4]}
 
 
-def _legend_of_runs(axes, labels: list[str], gauges: list[Gauge], over: dict[str, list],
-                    peaks: bool) -> None:
+def _legend_of_runs(axes, labels: list[str], gauges: list[Gauge],
+                    over: dict[str, list[Measured]], peaks: bool) -> None:
     """One legend for all panels: the colours of the runs, and what the kinds of lines mean."""
     entries = {label: Line2D([], [], color=style.COLORS[k % 8]) for k, label in enumerate(labels)}
     if any(g.value.ndim == 2 for g in gauges):
@@ -223,6 +156,6 @@ def _legend_of_runs(axes, labels: list[str], gauges: list[Gauge], over: dict[str
     if peaks and any(g.peak is not None for g in gauges):
         entries[PEAK] = Line2D([], [], color=style.GREY, linestyle=":", linewidth=0.8)
     for columns in over.values():
-        for k, (column, t, _) in enumerate(columns):
-            entries[f"measured ({column})"] = Line2D([], [], **_look_of_measured(k, t))
+        for k, data in enumerate(columns):
+            entries[f"measured ({data.column})"] = Line2D([], [], **_look_of_measured(k, data.time))
     style.side_legend(axes, list(entries.values()), list(entries))

@@ -82,14 +82,12 @@ def common(names: list[str]) -> str:
     return "".join(same).rstrip("_/")
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     files, patterns = split(args.words)
     read = [read_log(path, ["time"]) for path in files]
     logs = [log.table for log in read]
     if not patterns:
-        for name in logs[0]:
-            print(f"{name:28} {logs[0].units.get(name, '')}")
-        return 0
+        raise BadInput(f"{files[0]}: name columns to draw; there are {', '.join(logs[0])}")
     names = choose(logs[0], patterns, files[0], read[0].gauges)
     for path, log in zip(files, logs):
         need(log, names, path)
@@ -113,12 +111,21 @@ def run(args: argparse.Namespace) -> int:
     style.title(rows[0][0], args.title or (text if len(text) <= MOST_IN_TITLE else "Log"),
                 read[0].title if len(read) == 1 else ", ".join(runs) if len(runs) < 4
                 else f"{len(runs)} runs")
-    style.save(fig, args)
+    return fig
+
+
+def run(args: argparse.Namespace) -> int:
+    files, patterns = split(args.words)
+    if patterns:
+        return style.command(figure, args)
+    first, *_ = [read_log(path, ["time"]).table for path in files]
+    for name in first:
+        print(f"{name:28} {first.units.get(name, '')}")
     return 0
 
 
 def draw(axes, names: list[str], unit: str, logs: dict[str, Table]) -> None:
-    """The panel of the columns of a unit, of every run by its name; prints their extremes."""
+    """The panel of the columns of a unit, of every run by its name; tells their extremes."""
     k = 0
     for name in names:
         for label, log in logs.items():
@@ -130,6 +137,9 @@ def draw(axes, names: list[str], unit: str, logs: dict[str, Table]) -> None:
             k += 1
             gaps.tell(f"{name}, {label}", values, kind=name)
             if np.isfinite(values).any():
-                print(f"{name}, {label}: {np.nanmin(values):.6g} to {np.nanmax(values):.6g}"
-                      f"{'' if unit in ('', '1') else ' ' + unit}, at the end {values[-1]:.6g}")
+                least, most = np.nanmin(values), np.nanmax(values)
+                axes.figure.tell(f"{name}, {label}: {least:.6g} to {most:.6g}"
+                                 f"{'' if unit in ('', '1') else ' ' + unit}, at the end "
+                                 f"{values[-1]:.6g}", column=name, run=label, unit=unit,
+                                 least=least, most=most, end=values[-1])
     axes.set_ylabel(f"{common(names)} ({unit or '1'})".lstrip())

@@ -32,13 +32,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                                 ("value", "compression_mean", "number shown in the cells"),
                                 ("dt-hat", "dt_hat", "dimensionless step dt sqrt(g/h)")):
         parser.add_argument(f"--{name}", default=default, metavar="COLUMN",
+                            dest="class_" if name == "class" else None,
                             help=f"column with the {text} (default %(default)s)")
     style.add_output(parser, "map.png")
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     table, what = read_csvs(args.csv), ", ".join(args.csv)
-    verdict = getattr(args, "class")
+    verdict = args.class_
     need(table, [args.x, args.y, verdict], what)
     unknown = set(table[verdict].tolist()) - set(CLASSES)
     if unknown:
@@ -62,10 +63,11 @@ def run(args: argparse.Namespace) -> int:
                                     linewidth=0.6) for color, sign in CLASSES.values()]
     style.side_legend(panels[0, -1], handles, list(CLASSES))
     style.figure_title(fig, args.title or _title(table, args.value))
-    style.save(fig, args)
     for name in CLASSES:
-        print(f"{name:9} {np.count_nonzero(table[verdict] == name):5d} of {len(table)} runs")
-    return 0
+        count = np.count_nonzero(table[verdict] == name)
+        fig.tell(f"{name:9} {count:5d} of {len(table)} runs", verdict=name, runs=count)
+    fig.told_last = True
+    return fig
 
 
 def _panels(table: Table, args: argparse.Namespace) -> list[tuple[str, Table]]:

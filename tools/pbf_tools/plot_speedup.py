@@ -40,7 +40,7 @@ def speedups(base: Table, target: Table) -> np.ndarray:
                      for n in sorted(a) if n in b]).reshape(-1, 4)
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     table = bench.read_bench(args.csv, args.state)
     base, target = bench.Setup.parse(args.base), bench.Setup.parse(args.target)
     bases, targets = base.rows(table), target.rows(table)
@@ -56,7 +56,8 @@ def run(args: argparse.Namespace) -> int:
         axes.errorbar(n, ratio, yerr=spread, label=scene, **style.cycle(k))
         sizes.append(n)
         for row in points:
-            print(f"{scene:12} {row[0]:10.0f} particles  {row[1]:8.4g} x")
+            fig.tell(f"{scene:12} {row[0]:10.0f} particles  {row[1]:8.4g} x", scene=scene,
+                     particles=row[0], ratio=row[1], lowest=row[2], highest=row[3])
     axes.set_yscale("log")
     style.plain_log(axes.yaxis)
     style.particle_axis(axes, np.concatenate(sizes))
@@ -64,8 +65,7 @@ def run(args: argparse.Namespace) -> int:
     axes.legend(title="scene", loc="best")
     style.title(axes, args.title or f"Speed-up of {target} over {base}",
                 f"{_device(targets)} against {_device(bases)}, per update")
-    style.save(fig, args)
-    return 0
+    return fig
 
 
 def _device(rows: Table) -> str:

@@ -108,7 +108,7 @@ def draw(axes, labels: list[str], columns: list[tuple[dict[str, float], float]],
     return handles
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     if any(map(is_run, args.csv)):
         return _runs(args)
     table = bench.read_bench(args.csv, args.state)
@@ -133,8 +133,7 @@ def run(args: argparse.Namespace) -> int:
                 axes.set_xlabel("particles")
             if j == 0:
                 axes.set_ylabel("share of an update (%)")
-    _finish(fig, panels[0, -1], handles, args, "Time per stage")
-    return 0
+    return _finish(fig, panels[0, -1], handles, args, "Time per stage")
 
 
 def _setups(table: Table) -> list[bench.Setup]:
@@ -143,7 +142,7 @@ def _setups(table: Table) -> list[bench.Setup]:
     return [bench.Setup(b, int(t) if b == "cpu" else None, p) for b, t, p in keys]
 
 
-def _runs(args: argparse.Namespace) -> int:
+def _runs(args: argparse.Namespace) -> style.Picture:
     if not all(map(is_run, args.csv)):
         raise BadInput("give runs, or tables of pbf bench, not both")
     runs, parts = [read_run(path) for path in args.csv], []
@@ -161,14 +160,14 @@ def _runs(args: argparse.Namespace) -> int:
     handles = draw(axes, below, parts, "s", args.grouped)
     axes.set_ylabel("share of the time of all stages (%)")
     titles = dict.fromkeys(run_file.title for run_file in runs)
-    _finish(fig, axes, handles, args,
-            "Time per stage" + (f"\n{next(iter(titles))}" if len(titles) == 1 else ""))
-    return 0
+    return _finish(fig, axes, handles, args,
+                   "Time per stage" + (f"\n{next(iter(titles))}" if len(titles) == 1 else ""))
 
 
-def _finish(fig, axes, handles: dict[str, object], args: argparse.Namespace, text: str) -> None:
+def _finish(fig: style.Picture, axes, handles: dict[str, object], args: argparse.Namespace,
+            text: str) -> style.Picture:
     names = {"lambda": "lambda (with density)"} if "density" not in handles else {}
     order = list(reversed(handles))  # as they are stacked
     style.side_legend(axes, [handles[n] for n in order], [names.get(n, n) for n in order])
     style.figure_title(fig, args.title or text)
-    style.save(fig, args)
+    return fig

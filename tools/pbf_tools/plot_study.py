@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import style
+from . import style, units
 from .errors import BadInput, FileError
 from .table import Table, need, read_csvs
 
@@ -26,8 +26,6 @@ EXAMPLE = """example:
 
 TABLE = "study.csv"  # of pbf study, in its folder
 COMPRESSION = "compression_mean"
-UNITS = {"_" + re.sub("[ /]", "_", unit.replace("^", "")): unit for unit in
-         ("s", "m", "h", "J", "N", "N m", "Pa", "kg", "m/s", "kg/s", "kg m/s")}
 # Columns that no table has: which panel, counted from 0, shows a row, and its error there.
 PANEL, ERROR = " panel", " error"
 
@@ -92,7 +90,7 @@ def unit_of(column: str) -> str:
     ('m', 'kg m/s', '1')
     """
     found = re.search(r"_rms(_\w+)$", column)
-    return UNITS.get(found[1], "1") if found else "1"
+    return {**units.ENDINGS, "_h": "h"}.get(found[1], "1") if found else "1"
 
 
 def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -108,7 +106,7 @@ def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return mask
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     titles = list(dict.fromkeys(args.panels)) or [""]
     if args.panels and len(args.panels) != len(args.csv):
         raise BadInput(f"--panels: {len(args.panels)} names for {len(args.csv)} tables; give one "
@@ -131,7 +129,6 @@ def run(args: argparse.Namespace) -> int:
     looks = _looks(whole, keys, names)
     same = len(set(errors)) == 1
     fig, grid = style.figure(1, len(titles), size=(2.8 + 4.2 * len(titles), 4.8), sharey=same)
-    lines = []
     for k, (axes, title, error) in enumerate(zip(grid[0], titles, errors)):
         own = whole[PANEL] == k
         if not own.any():
@@ -139,7 +136,7 @@ def run(args: argparse.Namespace) -> int:
         percent = args.percent
         if percent is None:
             percent = error.startswith("compression") or error.endswith("_relative")
-        lines += _panel(axes, args, whole.where(own), error, percent, names[own], looks)
+        _panel(axes, args, whole.where(own), error, percent, names[own], looks)
         if args.goal:
             axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=1.5,
                       markeredgecolor="black", linestyle="", label="goal")
@@ -151,9 +148,8 @@ def run(args: argparse.Namespace) -> int:
     style.side_legend(grid[0][-1])
     if args.panels and args.title:
         style.figure_title(fig, args.title)
-    style.save(fig, args)
-    print("\n".join(lines))
-    return 0
+    fig.told_last = True
+    return fig
 
 
 def _plain_times(axes) -> None:
@@ -199,8 +195,8 @@ def _rows(args: argparse.Namespace, table: Table, errors: list[str]) -> Table:
 
 
 def _panel(axes, args: argparse.Namespace, table: Table, error: str, percent: bool,
-           names: np.ndarray, looks: dict[str, tuple[dict[str, object], str]]) -> list[str]:
-    """Draws a table; the settings on its front, one line of text each."""
+           names: np.ndarray, looks: dict[str, tuple[dict[str, object], str]]) -> None:
+    """Draws a table; tells the settings on its front."""
     x, y = table[args.x], table[ERROR] * (100 if percent else 1)
     spread = table.columns.get(args.x_spread)
     best = _pareto(table, args.pareto, x, y)
@@ -212,7 +208,9 @@ def _panel(axes, args: argparse.Namespace, table: Table, error: str, percent: bo
     axes.plot(x[at], y[at], "o", markersize=11, markerfacecolor="none", markeredgecolor="black",
               markeredgewidth=0.9, zorder=4)
     unit = " %" if percent else "" if unit_of(error) == "1" else " " + unit_of(error)
-    return [f"{x[i]:10.4g} s  {error} {y[i]:.3g}{unit}  {names[i]}" for i in at]
+    for i in at:
+        axes.figure.tell(f"{x[i]:10.4g} s  {error} {y[i]:.3g}{unit}  {names[i]}", seconds=x[i],
+                         error=error, value=y[i], unit=unit.strip(), series=names[i])
 
 
 def _looks(table: Table, keys: list[str],

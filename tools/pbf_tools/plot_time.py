@@ -57,7 +57,7 @@ def name_of(backend: str, threads: float, precision: str, vectors: str) -> str:
     return f"{text}, {vectors}" if vectors else text
 
 
-def run(args: argparse.Namespace) -> int:
+def figure(args: argparse.Namespace) -> style.Picture:
     table = bench.read_bench(args.csv, args.state)
     scenes = bench.pick_scenes(table, args.scene)
     vectors = table.columns.get("driver", np.full(len(table), ""))
@@ -85,8 +85,9 @@ def run(args: argparse.Namespace) -> int:
         axes.errorbar(n, time, yerr=spread, label=label, **style.cycle(k))
         sizes.append(n)
         flat = f"  greatest / least {time.max() / time.min():.2f}" if len(n) > 1 else ""
-        print(f"{label:32} " + "  ".join(f"{style.count_text(a)}: {b:.4g} us"
-                                        for a, b in zip(n, time)) + flat)
+        fig.tell(f"{label:32} " + "  ".join(f"{style.count_text(a)}: {b:.4g} us"
+                                           for a, b in zip(n, time)) + flat, curve=label,
+                 least_us=time.min(), greatest_us=time.max())
     axes.set_yscale("log")
     style.plain_log(axes.yaxis)
     style.particle_axis(axes, np.concatenate(sizes))
@@ -94,5 +95,4 @@ def run(args: argparse.Namespace) -> int:
     style.side_legend(axes)
     devices = dict.fromkeys(str(d) for d in table.where(chosen)["device"])
     style.title(axes, args.title or "Time per particle", ", ".join(devices))
-    style.save(fig, args)
-    return 0
+    return fig

@@ -29,6 +29,10 @@ class Run:
         self.path = run_path(path)
         self.refresh()
 
+    def __fspath__(self) -> str:
+        """The path of its file: what takes the path of a run takes an open one too."""
+        return os.fspath(self.path)
+
     def refresh(self) -> Run:
         """Looks at the file again: frames that were written meanwhile appear."""
         self._index = self._read(index.scan, "cannot read the run file")

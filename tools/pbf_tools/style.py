@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import argparse
+import io
 import json
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from .errors import BadInput, FileError
+from .table import Table
 
 if TYPE_CHECKING:
-    import argparse
-
     from matplotlib.axes import Axes
 
 # Okabe & Ito, "Color Universal Design"; yellow last, it is faint on white.
@@ -34,18 +36,54 @@ GROUP_COLORS = {group["name"]: group["color"] for group in _LIST["groups"]}
 GROUPS = {name: tuple(s["name"] for s in _LIST["stages"] if s["group"] == name)
           for name in GROUP_COLORS}
 
-matplotlib.rcParams.update({
+_LOOK = {
     "font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "legend.fontsize": 8.5,
     "xtick.labelsize": 9, "ytick.labelsize": 9, "figure.titlesize": 11, "axes.grid": True,
     "grid.color": "#DDDDDD", "grid.linewidth": 0.6, "axes.axisbelow": True, "lines.markersize": 5,
     "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False,
-    "errorbar.capsize": 3})
+    "errorbar.capsize": 3}
+
+
+def look(**more):
+    """A context and a decorator: what is drawn within has our look, what others draw keeps theirs."""
+    return matplotlib.rc_context(_LOOK | more)
+
+
+class Picture(Figure):
+    """A figure and what there is to say of it: `told`, the lines that the command prints, and the
+    same as a table, `numbers`. A notebook shows it as it is."""
+
+    def __init__(self, *args, **more):
+        super().__init__(*args, **more)
+        self.told: list[str] = []
+        self.told_last = False  # after the line that names the file
+        self._rows: list[dict[str, object]] = []
+
+    def tell(self, line: str, /, **numbers: object) -> None:
+        """Adds a line, and its numbers as a row; the rows of a picture have the same names."""
+        self.told.append(line)
+        self._rows.append(numbers)
+
+    @property
+    def numbers(self) -> Table:
+        """A row for each line, a column for each number or name in them; empty without lines."""
+        return Table({name: np.array([row[name] for row in self._rows])
+                      for name in (self._rows[0] if self._rows else ())})
+
+    @look()  # some parts are made only now
+    def draw(self, renderer) -> None:
+        super().draw(renderer)
+
+    def _repr_png_(self) -> bytes:
+        out = io.BytesIO()
+        self.savefig(out, format="png")
+        return out.getvalue()
 
 
 def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 4.2),
-           **grid) -> tuple[Figure, np.ndarray]:
+           **grid) -> tuple[Picture, np.ndarray]:
     """A figure (inches) with a grid of axes, shape (rows, columns); no window, no global state."""
-    fig = Figure(figsize=size, layout="constrained")
+    fig = Picture(figsize=size, layout="constrained")
     return fig, fig.subplots(rows, columns, squeeze=False, **grid)
 
 
@@ -112,13 +150,35 @@ def add_output(parser: argparse.ArgumentParser, default: str) -> None:
     parser.add_argument("-o", "--out", default=default, metavar="FILE",
                         help="picture to write; .png, .svg or .pdf" + shown)
     parser.add_argument("--title", help="title instead of the automatic one")
-    parser.add_argument("--dpi", type=float, default=150, help="dots per inch of a .png")
+    parser.add_argument("--dpi", type=dots, default=150, help="dots per inch of a .png")
+
+
+def drawn(figure: Callable[[argparse.Namespace], Picture], args: argparse.Namespace) -> Picture:
+    """The figure that `figure` makes of the arguments of its command."""
+    with look(**{"figure.dpi": args.dpi}):
+        return figure(args)
+
+
+def command(figure: Callable[[argparse.Namespace], Picture], args: argparse.Namespace) -> int:
+    """The command around a figure: draws it, prints what there is to say of it, and saves it."""
+    fig = drawn(figure, args)
+    if fig.told_last:
+        save(fig, args)
+    print(*fig.told, sep="\n", end="\n" if fig.told else "")
+    if not fig.told_last:
+        save(fig, args)
+    return 0
+
+
+def dots(text: str | float) -> float:
+    """The argument of --dpi."""
+    if not 10 <= float(text) <= 2400:
+        raise argparse.ArgumentTypeError(f"{text}: give a number from 10 to 2400")
+    return float(text)
 
 
 def save(fig: Figure, args: argparse.Namespace) -> None:
     """Writes the figure where `--out` says, and prints the path."""
-    if not 10 <= args.dpi <= 2400:
-        raise BadInput(f"--dpi {args.dpi:g}: give a number from 10 to 2400")
     try:
         fig.savefig(args.out, dpi=args.dpi)
     except OSError as problem:

@@ -1,6 +1,10 @@
-"""Frames, the log or one particle's track as CSV; frames also as extended XYZ for OVITO.
+"""Frames, the log, gauges, loads or one particle's track as CSV; frames also as extended XYZ for OVITO.
 
 Goes to stdout, or to a file. Units are those of the run file, SI (see run.units in the package).
+Tables of gauges and loads have them in the names of their columns, time_s, H_m, U_x_m_s, P_peak_Pa,
+load_post_x_N: plot-gauges --experiment compares other runs with them. Gauges are read every
+output.gauges_every, loads with the log: both go into one table where the times are the same, which
+they are without that key; else give two commands.
 """
 
 from __future__ import annotations
@@ -10,7 +14,7 @@ import sys
 
 import numpy as np
 
-from . import frame_range
+from . import frame_range, readings
 from .errors import BadInput
 from .fields import Frame
 from .logs import RUN_HELP, read_run
@@ -19,6 +23,7 @@ from .table import Table, write_text
 
 EXAMPLE = """examples:
   python -m pbf_tools to-csv out/demo --log -o log.csv
+  python -m pbf_tools to-csv out/demo --loads -o loads.csv
   python -m pbf_tools to-csv out/demo --frames -1 -o last.csv
   python -m pbf_tools to-csv out/demo --frames -1 --particles -o start.csv
       (x,y,z,vx,vy,vz: a body of shape `file` in another scene starts from there; with
@@ -30,10 +35,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_file", metavar="RUN", help=RUN_HELP)
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--log", action="store_true", help="measures and seconds per stage")
+    what.add_argument("--gauges", action="store_true",
+                      help="readings of the gauges, at their times; with --loads those too")
     what.add_argument("--track", type=int, metavar="ID", help="one particle over all frames")
     what.add_argument("--particles", action="store_true",
                       help="one frame as a particle file that scenes can read")
     what.add_argument("--xyz", action="store_true", help="frames as extended XYZ")
+    parser.add_argument("--loads", action="store_true",
+                        help="loads on walls and obstacles, at the times of the log; alone or with "
+                             "--gauges")
     parser.add_argument("--frames", default="-1", help=frame_range.HELP + " (default %(default)s)")
     parser.add_argument("--fields", metavar="NAMES",
                         help="fields, separated by commas (default: all)")
@@ -71,6 +81,11 @@ def run(args: argparse.Namespace) -> int:
 
 def _text(r: Run, args: argparse.Namespace) -> str:
     fields = args.fields.split(",") if args.fields else r.fields
+    if args.loads and (args.log or args.track is not None or args.particles or args.xyz):
+        raise BadInput("--loads goes alone or with --gauges")
+    if args.gauges or args.loads:
+        table = readings.table(r, args.gauges, args.loads)
+        return readings.head(r, table) + table.csv()
     if args.log:
         return r.log.csv()
     if args.track is not None:

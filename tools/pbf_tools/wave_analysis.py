@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from . import style
 from .table import Table
@@ -86,7 +85,7 @@ def _spectra(gauges: Sequence[Pair]) -> list[Spectrum]:
     return [first, *(spectrum(gauge, average=lines) for gauge in gauges[1:])]
 
 
-def figure(found: Analysis, title: str = "") -> Figure:
+def figure(found: Analysis, title: str = "") -> style.Picture:
     """Of regular waves heights and second harmonics along the flume, of others the spectra with their
     incident and reflected parts, and the reflection of each band."""
     fig, axes = style.figure(2, 1, (6.8, 6.0), sharex=True, height_ratios=(2, 1))

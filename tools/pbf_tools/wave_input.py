@@ -8,16 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import units
 from .errors import BadInput, UnknownName, unknown
 from .gauges import Gauge
 from .logs import read_run
-from .plot_gauges import time_column
+from .measured import time_column
 from .run_file import Run
 from .scene_text import gravity_in
 from .table import need, read_csv
 from .wave_records import Between
-
-UNITS = {"mm": 1e-3, "cm": 1e-2, "ms": 1e-3}  # in metres or seconds, at the end of a column's name
 
 
 @dataclass(frozen=True)
@@ -119,11 +118,15 @@ def columns_of(path: str, args: argparse.Namespace) -> tuple[list[Gauge], list[f
     if args.depth is None:
         raise BadInput(f"{path}: give the depth of the still water in m, --depth D")
 
-    def numbers(name: str, scale: float | None) -> np.ndarray:
-        unit = name.rpartition("_")[2]
-        return table[name] * (UNITS.get(unit, 1.0) if scale is None else scale)
+    def numbers(name: str, unit: str, scale: float | None) -> np.ndarray:
+        said = units.split(name)[1] or unit
+        own = units.factor(said, unit) if scale is None else scale
+        if own is None:
+            raise BadInput(f"{path}: column {name} is in {said}, expected {unit}; name another, or "
+                           f"give --scale, the {unit} of one unit")
+        return table[name] * own
 
-    return [Gauge(name, "column", "", "m", numbers(clock, None), numbers(name, args.scale))
+    return [Gauge(name, "column", "", "m", numbers(clock, "s", None), numbers(name, "m", args.scale))
             for name in wanted], [float(place) for place in wanted.values() if place is not None]
 
 

@@ -69,19 +69,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--csv", metavar="FILE", help="table to write: a row for each gauge")
 
 
-def run(args: argparse.Namespace) -> int:
+def draw(args: argparse.Namespace) -> style.Picture:
     between, band = pair(args.between, "--between"), pair(args.band, "--band")
     given = read(args, between)
     found = analyse(given.gauges, given.places, given.depth, args.period, between=between, band=band,
                     taper=args.taper, smallest=given.smallest, gravity=given.gravity)
-    print(report(found, given.smallest), end="")
+    picture = figure(found, args.title or given.title)
+    picture.told = report(found, given.smallest).splitlines()
     if args.csv:
         table = found.table()
         units = ", ".join(f"{name}={unit}" for name, unit in table.units.items())
         write_text(args.csv, f"# units: {units}\n" + table.csv())
-        print(f"wrote {args.csv}")
-    style.save(figure(found, args.title or given.title), args)
-    return 0
+        picture.told.append(f"wrote {args.csv}")
+    return picture
+
+
+def run(args: argparse.Namespace) -> int:
+    return style.command(draw, args)
 
 
 def report(found: Analysis, smallest: float) -> str:
