@@ -108,7 +108,7 @@ obstacles:
   - {name: blade, shape: box, min: [0.3, 0.4, 0.5], max: [0.7, 0.6, 0.6],
      motion: {kind: velocity, velocity: [0, 0, 0], angular: [0, 0, 180]}}
   - {name: turned, shape: box, min: [0.1, 0.4, 0.7], max: [0.3, 0.6, 0.8], turn_axis: [0, 1, 0], turn_angle: 90}
-  - {name: pipe-1, shape: cylinder, from: [0, 0.85, 0.8], to: [1, 0.85, 0.8], radius: 0.1}
+  - {name: pipe-1, shape: cylinder, from: [0.2, 0.85, 0.2], to: [0.8, 0.85, 1], radius: 0.1}
   - {name: pipe_1, shape: capsule, from: [0.8, 0.2, 0.5], to: [0.8, 0.2, 0.7], radius: 0.1}
   - {name: cork, shape: sphere, center: [0.5, 0.5, 0.3], radius: 0.1, free: {density: 300}}
   - {name: lid, shape: plane, point: [0, 0, 0.95], normal: [0, 0, -1]}
@@ -147,7 +147,7 @@ def test_obstacles_are_where_the_scene_and_the_fluid_move_them(convert, solids):
     pipe = UsdGeom.Cylinder(stage.GetPrimAtPath("/run/obstacles/pipe_1"))
     assert (pipe.GetRadiusAttr().Get(), pipe.GetHeightAttr().Get()) == pytest.approx((0.1, 1))
     ends = sorted(at(stage, "pipe_1", [0, 0, z], 0).round(9).tolist() for z in (-0.5, 0.5))
-    assert ends == [[0, 0.85, 0.8], [1, 0.85, 0.8]]
+    assert ends == [[0.2, 0.85, 0.2], [0.8, 0.85, 1]]
     assert stage.GetPrimAtPath("/run/obstacles/pipe_1_").GetTypeName() == "Capsule"
     with h5py.File(solids / "run.vtkhdf") as file:
         bodies = file["pbf/frames/bodies"][:, 0, :3]
