@@ -50,6 +50,7 @@ def test_optional_packages_are_named_where_they_are_needed(minimal, pictures, tm
     for package, pip, words in (
             ("PIL", "pillow", ("video", pictures, "-o", "a.gif")),
             ("pysplashsurf", "pysplashsurf", ("surface", minimal, "-o", "a.ply")),
+            ("pxr", "usd-core", ("to-usd", minimal, "-o", "a.usdc")),
             ("yaml", "pyyaml", ("to-npz", minimal, "-o", "a.npz")),
             ("yaml", "pyyaml", ("to-lagrangebench", minimal, "-o", "data")),
             ("pyvista", "pyvista", ("make-scene", "mesh", "--file", "a.stl", "--width", 1,

@@ -160,6 +160,28 @@ def test_a_terminal_shows_each_step_in_one_line_that_is_overwritten(tree):
     assert code == 0 and "nothing is missing" in text
 
 
+def test_setup_installs_for_pictures_alone_where_nothing_is_built(tree):
+    code, text, _ = tree("tools/setup", "--pictures", installed=False)
+    assert code == 0 and re.search(r"^tools/setup: installing libosmesa6$", text, re.MULTILINE)
+    code, text, _ = tree("tools/setup", "--pictures")
+    assert code == 0 and "nothing is missing" in text
+    code, text, _ = tree("tools/setup", "--ranks", installed=False)
+    assert code == 0 and "g++" in text and text.count("libopenmpi-dev openmpi-bin") == 1
+
+
+def test_the_container_is_made_of_what_is_here_and_of_the_packages_of_setup():
+    text = (ROOT / "tools/container/Dockerfile").read_text().replace("\\\n", "")
+    copied = [words.split()[:-1] for words in re.findall(r"^COPY (?!--)(.*)$", text, re.MULTILINE)]
+    sources = {source for words in copied for source in words}
+    assert all((ROOT / source).exists() for source in sources)
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True).stdout
+    assert {line.split("/")[0] for line in tracked.splitlines()} <= sources and ".git" in sources
+    assert "apt-get" not in text and text.count("tools/setup --pictures") == 1
+    used = set(re.findall(r"\b(build_static|copy_licenses|cuda_toolkit)\b", text))
+    static = (ROOT / "tools/static.sh").read_text()
+    assert len(used) == 3 and all(f"\n{name}() {{" in static for name in used)
+
+
 def test_a_long_build_says_where_it_is_at_least_every_ten_seconds(tree):
     """Here every second. Compilers may take longer than that over one file, and say nothing."""
     assert "\nevery=10\n" in (ROOT / "tools/shared.sh").read_text()

@@ -30,6 +30,7 @@ COMMANDS = {
     "compare": "differences of two runs",
     "to-csv": "frames, the log, gauges, loads or a track as CSV; frames as extended XYZ",
     "to-npz": "runs as NumPy files: positions, ids, types, times",
+    "to-usd": "a run as USD points, for Blender and Houdini",
     "to-lagrangebench": "a data set for learning in the layout of LagrangeBench",
     "surface": "surface of the fluid as triangles",
     "make-scene": "scene from a shape, a picture or a mesh; random ones for learning",
