@@ -73,11 +73,12 @@ int command_plan(const PlanOptions& options) {
   // Plan for --resolved too: a scene that cannot run is an error in every form of output.
   std::vector<std::string> overrides = options.overrides;
   if (options.threads > 0) overrides.push_back("threads=" + std::to_string(options.threads));
-  const Start start = prepare(
-      load_scene_or_run(options.scene, overrides, options.base_folder),
-      {.fits = false, .warnings = true, .particles = false, .progress = [&](const std::string& t) {
-         log.progress(t);
-       }});
+  const Start start = prepare(load_scene_or_run(options.scene, overrides, options.base_folder),
+                              {.fits = false,
+                               .warnings = true,
+                               .particles = false,
+                               .measured = true,
+                               .progress = [&](const std::string& t) { log.progress(t); }});
   const Plan& plan = start.plan;
   const Scene& scene = start.scene();
   const int threads = solver_threads(scene, plan.particles);

@@ -114,6 +114,7 @@ int command_run(const RunOptions& options) {
   Start start = prepare(std::move(loaded),
                         {.warnings = true,
                          .strict = options.strict,
+                         .measured = true,
                          .when_read = check_outputs,
                          .progress = [&](const std::string& line) { log.progress(line); }});
   if (options.resume && !there)

@@ -15,6 +15,7 @@ inline namespace PBF_VARIANT {}
 inline namespace app_module {}
 inline namespace base_module {}
 inline namespace campaign_module {}
+inline namespace data_module {}
 inline namespace exec_module {}
 inline namespace io_module {}
 inline namespace program_module {}

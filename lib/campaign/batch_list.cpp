@@ -111,7 +111,7 @@ void add_needs(const BatchMember& m, std::vector<std::string> overrides,
                const std::string& base_folder, bool here, int ranks, BatchNeeds& needs) {
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
   const Start start = prepare(load_scene_or_run(m.scene, overrides, base_folder),
-                              {.fits = here, .particles = false});
+                              {.fits = here, .particles = false, .measured = true});
   std::int64_t host_bytes = start.plan.memory.host_peak();
   if (ranks > 1) {
     require_ranks(start.scene(), start.plan, ranks);

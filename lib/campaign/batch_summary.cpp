@@ -1,6 +1,7 @@
 #include "lib/campaign/batch_summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -8,6 +9,7 @@
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
+#include "lib/data/comparison.h"
 #include "lib/io/run_file.h"
 #include "lib/io/table.h"
 #include "lib/scene/keys.h"
@@ -65,11 +67,17 @@ std::string unit_of_key(const std::string& key) {
 
 constexpr const char* kOfFile[] = {"particles", "frames", "warnings", "seconds"};
 
-/// Adds from a run file: last measurements, numbers of particles, frames and warnings, seconds;
-/// empty cells if there is no file.
-void add_results(const std::string& path, std::vector<Cell>& row) {
+/// What a run file says: last measurements, numbers of particles, frames and warnings, seconds, as
+/// empty cells if there is no file; and comparisons with measurements.
+struct Results {
+  std::vector<Cell> cells;
+  std::vector<StoredComparison> compared;
+};
+Results read_results(const std::string& path) {
   const std::vector<std::string> names = last_values();
-  std::vector<Cell> cells(names.size() + std::size(kOfFile));
+  Results out;
+  std::vector<Cell>& cells = out.cells;
+  cells.resize(names.size() + std::size(kOfFile));
   std::error_code error;
   if (std::filesystem::exists(path, error)) try {
       const RunReader file(path);
@@ -85,11 +93,39 @@ void add_results(const std::string& path, std::vector<Cell>& row) {
         if (name.rfind("stage/", 0) == 0)
           for (const double s : file.log_column(name)) seconds += s;
       cells.back() = seconds;
+      out.compared = file.comparisons();
     } catch (const Error&) {
       cells.assign(cells.size(), Cell{});  // the message of the run tells what is wrong
     }
-  row.insert(row.end(), cells.begin(), cells.end());
+  return out;
 }
+
+/// "compare/H2/rms", with its unit, of all runs in the order of first appearance.
+class ComparedColumns {
+ public:
+  explicit ComparedColumns(const std::vector<Results>& all) {
+    for (const Results& r : all)
+      for (const StoredComparison& c : r.compared)
+        for (const std::string& number : comparison_numbers())
+          if (!std::isnan(number_of(c, number)) && seen_.insert(column(c, number)).second)
+            names_.push_back(column(c, number));
+  }
+  const std::vector<std::string>& names() const { return names_; }
+  void add(const Results& r, std::vector<Cell>& row) const {
+    std::map<std::string, double> values;
+    for (const StoredComparison& c : r.compared)
+      for (const StoredComparison::Number& n : c.numbers) values[column(c, n.name)] = n.value;
+    for (const std::string& name : names_)
+      row.push_back(values.contains(name) ? known(values[name]) : Cell{});
+  }
+  static std::string column(const StoredComparison& c, const std::string& number) {
+    return "compare/" + c.name + "/" + number;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::set<std::string> seen_;
+};
 
 }  // namespace
 
@@ -123,14 +159,25 @@ std::string batch_summary(const std::vector<BatchMember>& members,
     units[of_keys.back()] = unit_of_key(key);
   }
   columns.insert(columns.begin() + 3, of_keys.begin(), of_keys.end());
+  std::vector<Results> results;
+  for (const BatchMember& m : members)
+    results.push_back(read_results(out + "/" + m.name + "/" + kRunFile));
+  const ComparedColumns compared(results);
+  columns.insert(columns.end(), compared.names().begin(), compared.names().end());
+  for (const Results& r : results)
+    for (const StoredComparison& c : r.compared)
+      for (const StoredComparison::Number& n : c.numbers)
+        units[ComparedColumns::column(c, n.name)] = n.unit;
   Table table(columns);
-  for (const BatchMember& m : members) {
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const BatchMember& m = members[k];
     const JobEnd end = ends.contains(m.name) ? ends.at(m.name) : JobEnd{-1, ""};
     std::vector<Cell> row{m.name, m.scene, joined(m.overrides, " ")};
     for (const std::string& key : keys) row.push_back(value_of(m, key));
     row.insert(row.end(), {end.code < 0 ? Cell{} : Cell{std::int64_t{end.code}},
                            exit_reason(end.code), end.message});
-    add_results(out + "/" + m.name + "/" + kRunFile, row);
+    row.insert(row.end(), results[k].cells.begin(), results[k].cells.end());
+    compared.add(results[k], row);
     table.add(row);
   }
   std::vector<std::string> with_unit;

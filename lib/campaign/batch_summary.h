@@ -18,7 +18,8 @@ std::string exit_reason(int code);
 /// settings; one column per key that the list or the grid sets, empty if a run uses the value of
 /// its scene ("set.name" if the key has the name of another column); exit code, reason and message;
 /// from the run file, if any, the last row of the log (time, update, compression, energies, ...)
-/// and the numbers of particles, frames and warnings; `seconds` of all updates with their output,
+/// and the numbers of particles, frames and warnings; comparisons with measurements that some run
+/// has ("compare/H2/rms"); `seconds` of all updates with their output,
 /// the only column that depends on the machine.
 std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out);

@@ -7,9 +7,9 @@
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
+#include "lib/data/series.h"
 #include "lib/io/csv.h"
 #include "lib/scene/number.h"
-#include "lib/verify/compare_data.h"
 
 namespace pbf::campaign_module {
 FrontData read_front_data(const std::string& path) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/campaign/front.h"
+#include "lib/data/comparison.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::campaign_module {
@@ -47,6 +48,7 @@ struct Study {
   std::vector<std::string> errors{"compression_mean"};  ///< measures; the first one's front is
                                                         ///< marked
   std::vector<MotionError> motion;                      ///< compared with the reference
+  std::vector<DataComparison> comparisons;              ///< with measurements, of the scene
   std::vector<double> targets{0.01, 0.001};             ///< of the errors
   double from = 0;                                      ///< s, earlier measurements are ignored
   double energy_limit = 0.01;  ///< for members whose variant has no own limit
@@ -64,10 +66,10 @@ Study load_study(const std::string& path, const std::vector<std::string>& overri
 /// The measures that can be plotted against run time; `errors` are some of them.
 std::vector<std::string> study_error_measures(const Study& study);
 
-/// The columns of MemberResult::log that not every run has: the numbers of gauges, and `work` where
-/// something moves.
+/// The columns of MemberResult::log that not every run has: the numbers of gauges, `work` where
+/// something moves, and loads.
 struct FurtherColumn {
-  std::string name;  ///< "gauge/H2", "gauge/U/x", "work"
+  std::string name;  ///< "gauge/H2", "gauge/U/x", "work", "load/post/force_x"
   const char* unit;
 };
 std::vector<FurtherColumn> further_columns(const Scene& scene);

@@ -6,11 +6,11 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/campaign/study_reader.h"
+#include "lib/data/series.h"
 #include "lib/program/schedule.h"
 #include "lib/scene/number.h"
 #include "lib/scene/suggest.h"
 #include "lib/solver/diagnostics.h"
-#include "lib/verify/compare_data.h"
 
 namespace pbf::campaign_module {
 namespace {
@@ -252,7 +252,7 @@ bool StudyReader::check_column(MotionError& e, const StudyMember& m) {
 /// Said before hours of runs, not after them.
 void StudyReader::check_times(const StudyMember& m) {
   const auto own = measured_times(m.scene), there = measured_times(study_.reference->scene);
-  const auto [times, common] = common_times({own, own}, {there, there}, study_.from);
+  const auto [times, common] = common_times({own, own}, {there, there}, {.from = study_.from});
   if (enough_points(common, times)) return;
   if (times < kFewestPoints)
     return problems_.add(

@@ -83,6 +83,7 @@ Study StudyReader::read(const std::vector<std::string>& overrides, const std::st
       bad_input(root_.find("from")->place() + ": from",
                 to_text(study_.from) + " s is not before time.end (" + to_text(m.scene.time.end) +
                     " s) of " + m.label);
+  read_data();
   check_errors();
   problems_.raise();
   return study_;

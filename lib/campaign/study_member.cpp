@@ -19,6 +19,11 @@ double seconds_of(const Session& session, const Study& study) {
   return study.cpu_clock ? session.seconds().cpu : session.seconds().wall;
 }
 
+/// "load/post/force_x"
+std::string load_column(const ReadingColumn& c, int component) {
+  return std::string(c.kind) + "/" + c.of + "/" + number_name(c, component);
+}
+
 /// "gauge/U/x"; `number`: of number_name().
 std::string gauge_column(const std::string& gauge, const std::string& number) {
   return "gauge/" + gauge + (number.empty() ? "" : "/" + number);
@@ -39,7 +44,17 @@ bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
   LogRow row;
   row.measures = solver.diagnose();
   row.measures.work = work.until(row.measures);
-  if (has_work(scene)) solver.readings(Series::measures, Interval::ends), work.take(row.measures);
+  if (const std::vector<std::string> loaded = loaded_names(scene);
+      has_work(scene) || !loaded.empty()) {
+    const std::vector<double> numbers =
+        solver.readings(Series::measures, regular ? Interval::ends : Interval::goes_on);
+    if (regular) work.take(row.measures);
+    for_each_number(plan.columns, Series::measures,
+                    [&](const ReadingColumn& c, int component, std::size_t k) {
+                      if (c.kind == std::string_view("load"))
+                        out.log[load_column(c, component)].push_back(numbers.at(k));
+                    });
+  }
   energy.follow(row.measures);
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
@@ -68,6 +83,9 @@ std::vector<FurtherColumn> further_columns(const Scene& scene) {
         },
         g.kind);
   if (has_work(scene)) all.push_back({"work", "J"});
+  for (const std::string& of : loaded_names(scene))
+    for (const ReadingColumn& c : load_columns(of, 0, 0))
+      for (int k = 0; k < c.components; ++k) all.push_back({load_column(c, k), c.unit});
   return all;
 }
 

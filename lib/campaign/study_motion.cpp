@@ -6,22 +6,11 @@
 
 #include "lib/base/error.h"
 #include "lib/campaign/study_table.h"
+#include "lib/data/units.h"
 #include "lib/scene/load.h"
 
 namespace pbf::campaign_module {
 namespace {
-
-/// "_kg_m_s" for "kg m/s", as the names of columns of other tables end; "" for a number alone.
-std::string unit_ending(const std::string& unit) {
-  if (unit == "1") return "";
-  std::string out = "_";
-  for (const char c : unit)
-    if (c == ' ' || c == '/')
-      out += '_';
-    else if (c != '^')
-      out += c;
-  return out;
-}
 
 /// What runs of the same text share: all but the step and what is written how often.
 std::string without_step(Scene s) {
@@ -29,6 +18,7 @@ std::string without_step(Scene s) {
   s.time.step = 1;
   s.measure_every = 1;
   s.output.reset();
+  s.compare.clear();
   s.render.reset();
   s.checkpoint.reset();
   return resolved_yaml(s);
@@ -97,9 +87,9 @@ void compare_motion(const Study& study, const MemberResult* reference, StudyRow&
       continue;
     }
     try {
-      out.difference =
-          compare_series({row.result.series("time"), row.result.series(column)},
-                         {reference->series("time"), reference->series(column)}, study.from);
+      out.difference = compare_series({row.result.series("time"), row.result.series(column)},
+                                      {reference->series("time"), reference->series(column)},
+                                      {.from = study.from});
     } catch (const Error& e) {
       if (e.code() != ExitCode::bad_input) throw;
       out.note = e.what();

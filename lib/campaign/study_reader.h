@@ -37,6 +37,7 @@ class StudyReader : StrictReader {
   std::vector<std::size_t> finest() const;
   std::vector<std::size_t> with_values(const Settings& values) const;
   void check_errors();
+  void read_data();
   bool check_column(MotionError& e, const StudyMember& m);
   void check_times(const StudyMember& m);
 

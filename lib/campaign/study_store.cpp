@@ -92,6 +92,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
   static const std::string program = program_text();
   Scene scene = m.scene;
   scene.name.clear();
+  scene.compare.clear();  // what is compared changes no result
   read_linked_files(scene, study.scene_dir);
   const Json key{"3",  // version of the format below
                  program,

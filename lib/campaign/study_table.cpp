@@ -100,6 +100,7 @@ std::vector<std::string> study_error_measures(const Study& study) {
   if (study.front)
     for (const FrontData& d : study.front->data) names.push_back("front_rms_" + d.name);
   for (const MotionError& e : study.motion) names.push_back(e.rms()), names.push_back(e.relative());
+  for (const std::string& name : comparison_measures(study)) names.push_back(name);
   return names;
 }
 
@@ -139,6 +140,11 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     row.measures.push_back(m.difference ? m.difference->rms : NAN);
     row.measures.push_back(m.difference ? m.difference->rms_relative.value_or(NAN) : NAN);
   }
+  std::string note;
+  for (const double measure : compare_with_data(study, result, note))
+    row.measures.push_back(measure);
+  if (!note.empty() && row.status == "finished")
+    row.message += (row.message.empty() ? "" : "; ") + note;
   const double rise = measure_of(study, row, "energy_rise");
   if (row.status == "finished" && !(rise <= member.energy_limit)) {
     row.status = "energy_rose";

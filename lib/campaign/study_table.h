@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lib/campaign/study.h"
+#include "lib/data/series.h"
 #include "lib/io/table.h"
-#include "lib/verify/compare_data.h"
 
 namespace pbf::campaign_module {
 
@@ -44,6 +44,13 @@ void check_reference(const Study& study, const MemberResult& result);
 /// The row of a result. `reference`: result of Study::reference, or null.
 StudyRow study_row(const Study& study, const StudyMember& member, const MemberResult& result,
                    const MemberResult* reference);
+
+/// The measures of Study::comparisons: "compare/H2/rms", "compare/H2/rms_relative" ..., and of
+/// several "compare/rms_relative", the root of the mean square of all.
+std::vector<std::string> comparison_measures(const Study& study);
+/// Their values for a result; NaN where something cannot be compared, with the reason in `note`.
+std::vector<double> compare_with_data(const Study& study, const MemberResult& result,
+                                      std::string& note);
 
 /// Fills motion, is_reference and series of a row with its result; `reference` as for study_row().
 void compare_motion(const Study& study, const MemberResult* reference, StudyRow& row);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/program/column.h"
@@ -57,12 +58,25 @@ struct RunInfo {
   std::vector<std::string> bodies{};
 };
 
+/// The result of an entry of `compare` (lib/data/comparison.h).
+struct StoredComparison {
+  struct Number {
+    std::string name, unit;
+    double value = 0;  ///< NaN: there is none
+  };
+  std::string name;
+  std::vector<Number> numbers{};
+  /// What was compared with what: attributes by name ("data", "column", "sha256", "note" ...).
+  std::vector<std::pair<std::string, std::string>> texts{};
+};
+
 /// What is known when a run ends.
 struct RunEnding {
   std::string status{};  ///< finished, stopped, diverged
   std::string reason{};  ///< of the session's end; empty: the status
   std::int64_t last_update = 0;
-  std::vector<std::string> warnings{};  ///< all of the run, in place of RunInfo::warnings
+  std::vector<std::string> warnings{};          ///< all of the run, in place of RunInfo::warnings
+  std::vector<StoredComparison> comparisons{};  ///< in place of those that the file has
 };
 
 /// One row of the log: the measures, and the seconds per stage since the row before.
@@ -142,6 +156,13 @@ struct FrameTable {
   std::int64_t bodies = 0;      ///< free bodies in every frame
 };
 
+/// Readings over time; vectors one behind the other.
+struct RunColumn {
+  std::vector<double> values{};  ///< empty: the file has no such column
+  int components = 1;
+  std::string unit{}, kind{};  ///< kind: of a gauge ("level")
+};
+
 /// Reads a run file, also one still being written or cut off. Throws Error(io) with the reason.
 class RunReader {
  public:
@@ -161,6 +182,9 @@ class RunReader {
   /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
   std::vector<double> log_column(const std::string& name) const;
   std::vector<std::string> log_columns() const;
+  /// A column of readings by its path below /pbf: "gauges/H2", "log/load/post/force_x".
+  RunColumn column(const std::string& path) const;
+  std::vector<StoredComparison> comparisons() const;
   /// Data below /pbf/gauges ("time", "update", "H1", "peak/P1"); none where the run has no gauges.
   std::vector<std::string> gauges() const;
   /// Readings of one of them, vectors one behind the other; as many as all have. Empty when not

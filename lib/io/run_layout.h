@@ -29,6 +29,10 @@ inline constexpr double waiting_seconds = 5;
 /// Where readings of gauges lie below /pbf.
 inline constexpr const char* gauges = "gauges/";
 
+/// Where the results of comparisons are below /pbf: a group for each, with a scalar for each
+/// number.
+inline constexpr const char* compare = "compare";
+
 /// Rows in a chunk of the table of sessions, and bytes of its texts.
 inline constexpr unsigned session_rows = 16, session_text = 96;
 

@@ -140,6 +140,7 @@ void RunOutput::close(const RunEnding& end) {
   flush();
   end_session(end.reason.empty() ? end.status : end.reason, end.last_update);
   write_warnings(end.warnings);
+  write_comparisons(end.comparisons);
   h5::write_text(pbf_, "status", end.status);
   sync();
   closed_ = true;

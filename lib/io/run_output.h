@@ -85,6 +85,7 @@ class RunOutput {
   void write_gauges();
   void write_info(const RunInfo& info);
   void write_warnings(const std::vector<std::string>& warnings);
+  void write_comparisons(const std::vector<StoredComparison>& comparisons);
   void make_sessions();
   void begin_session(const RunInfo& info);
   void end_session(const std::string& reason, std::int64_t last_update);

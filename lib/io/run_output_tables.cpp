@@ -103,6 +103,20 @@ void RunOutput::write_warnings(const std::vector<std::string>& warnings) {
   h5::write_text(pbf_, "warnings", lines);
 }
 
+void RunOutput::write_comparisons(const std::vector<StoredComparison>& comparisons) {
+  if (h5::has_link(pbf_, run_layout::compare))  // of a run that is gone on with
+    check(H5Ldelete(pbf_, run_layout::compare, H5P_DEFAULT));
+  if (comparisons.empty()) return;
+  const h5::Group all = h5::make_group(pbf_, run_layout::compare);
+  for (const StoredComparison& c : comparisons) {
+    const h5::Group group = h5::make_group(all, c.name.c_str());
+    for (const auto& [name, text] : c.texts) h5::write_text(group, name.c_str(), text);
+    for (const StoredComparison::Number& n : c.numbers)
+      h5::write_dataset(group, n.name.c_str(), H5T_IEEE_F64LE, {}, H5T_NATIVE_DOUBLE, &n.value,
+                        n.unit.c_str());
+  }
+}
+
 void RunOutput::create_fields(const Snapshot& first) {
   const hsize_t rows = std::max<hsize_t>(1, std::max(expected_, first.count));
   const hsize_t chunks = (rows + max_chunk_rows - 1) / max_chunk_rows;

@@ -1,10 +1,6 @@
-// RunReader: opens the file anew for every call, so that a file still growing is read as it is.
+// RunReader: what a run was, and its frames.
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <limits>
 #include <sstream>
-#include <thread>
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
@@ -12,11 +8,11 @@
 #include "lib/io/h5_read.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
+#include "lib/io/with_run_file.h"
 
 namespace pbf::io_module {
 namespace {
 
-const std::string kGauges = std::string("pbf/gauges");
 const std::string kBodies = std::string("pbf/") + run_layout::bodies;
 
 FrameTable::Field describe(hid_t vtk, const std::string& name, const std::string& path,
@@ -145,30 +141,6 @@ FrameTable scan(hid_t file) {
   return in;
 }
 
-/// Whether somebody may be writing the file: the last write was a short while ago.
-bool alive(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const auto written = fs::last_write_time(path, error);
-  return !error && fs::file_time_type::clock::now() - written < std::chrono::minutes(1);
-}
-
-/// Opens the file and runs `action(file)`. What a live file shows while its writer is in the
-/// middle of a commit may not fit together, so a failure is final only when it repeats.
-template <class Action>
-auto with_file(const std::string& path, const std::string& what, Action action) {
-  for (int attempt = 1;; ++attempt) {
-    try {
-      const h5::Reading file(path);
-      return action(file);
-    } catch (const h5::Failure& f) {
-      if (attempt == 3 || !alive(path))
-        throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-}
-
 }  // namespace
 
 RunReader::RunReader(const std::string& path) : path_(path) {
@@ -241,50 +213,6 @@ std::vector<RunSession> RunReader::sessions() const {
     }
     return all;
   });
-}
-
-std::vector<std::string> RunReader::log_columns() const {
-  return with_file(path_, "cannot read the log", [](const h5::Reading& file) {
-    return h5::datasets_below(h5::open_group(file, "pbf/log"), run_layout::log_groups);
-  });
-}
-
-std::vector<std::string> RunReader::gauges() const {
-  return with_file(path_, "cannot read the gauges", [](const h5::Reading& file) {
-    if (!h5::has_link(file, kGauges)) return std::vector<std::string>{};
-    return h5::datasets_below(h5::open_group(file, kGauges), 1);
-  });
-}
-
-std::vector<double> RunReader::gauge(const std::string& name) const {
-  const std::vector<std::string> all = gauges();
-  if (std::ranges::find(all, name) == all.end()) return {};
-  return with_file(path_, "cannot read the gauges", [&](const h5::Reading& file) {
-    const h5::Group group = h5::open_group(file, kGauges);
-    hsize_t rows = std::numeric_limits<hsize_t>::max();
-    // A process killed while it wrote them may leave columns of different lengths.
-    for (const std::string& each : all)
-      rows = std::min(rows, h5::shape(h5::open_dataset(group, each)).at(0));
-    return h5::read_all<double>(group, name, rows);
-  });
-}
-
-std::vector<double> RunReader::log_column(const std::string& name) const {
-  return with_file(path_, "cannot read the log",
-                   [&](const h5::Reading& file) -> std::vector<double> {
-                     const h5::Group log = h5::open_group(file, "pbf/log");
-                     if (name.empty() || !h5::has_link(log, name)) return {};
-                     auto values = h5::read_all<double>(log, name);
-                     // A process killed while it wrote the log may leave columns of different
-                     // lengths.
-                     for (const auto& c : run_layout::log_columns()) {
-                       if (!h5::has_link(log, c.name))
-                         continue;  // of a later version than the file's
-                       const h5::Dataset d = h5::open_dataset(log, c.name);
-                       values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
-                     }
-                     return values;
-                   });
 }
 
 }  // namespace pbf::io_module

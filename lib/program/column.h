@@ -48,6 +48,12 @@ struct ReadingColumn {
 /// over an interval of length 0 is 0.
 std::vector<ReadingColumn> reading_columns(const Scene& scene, const Plan& plan);
 
+/// The columns of a wall or obstacle whose loads are recorded. grain: load_grain(); arm: m, of its
+/// torques.
+std::vector<ReadingColumn> load_columns(const std::string& of, double grain, double arm);
+/// The walls and obstacles whose loads are recorded, in the order of their columns.
+std::vector<std::string> loaded_names(const Scene& scene);
+
 /// The columns of the poses of a free body: the numbers of a BodyMotion in their order. Those of a
 /// prescribed motion are the first two.
 std::vector<ReadingColumn> body_columns(const std::string& name);

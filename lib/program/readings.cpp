@@ -37,12 +37,9 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
   const double grain = load_grain(s, plan);
   double arm = 0;  // m; torques are about the domain's corner, in units of up to twice its edges
   for (std::size_t k = 0; k < 3; ++k) arm = std::hypot(arm, s.domain.max[k] - s.domain.min[k]);
-  for (const int surface : loaded_surfaces(s)) {
-    const Obstacle* o = obstacle_of(s, surface);
-    const std::string of = o ? o->name : kFaceNames[std::size_t(surface)];
-    all.push_back({"load", of, "force", "N", "", mean, 3, measures, {grain}, 1});
-    all.push_back({"load", of, "torque", "N m", "", mean, 3, measures, {3 * arm * grain}, arm});
-    all.push_back({"load", of, "force_peak", "N", "", peak, 1, measures, {grain}, 1});
+  for (const std::string& of : loaded_names(s)) {
+    const std::vector<ReadingColumn> columns = load_columns(of, grain, arm);
+    all.insert(all.end(), columns.begin(), columns.end());
   }
   for (const Dissipation by : dissipations(s)) {
     const double unit = dissipation_unit(s, plan);
@@ -76,6 +73,23 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
     all.insert(all.end(), of.begin(), o.free ? of.end() : of.begin() + 2);
   }
   return all;
+}
+
+std::vector<ReadingColumn> load_columns(const std::string& of, double grain, double arm) {
+  using enum Join;
+  constexpr Series kWhen = Series::measures;
+  return {{"load", of, "force", "N", "", mean, 3, kWhen, {grain}, 1},
+          {"load", of, "torque", "N m", "", mean, 3, kWhen, {3 * arm * grain}, arm},
+          {"load", of, "force_peak", "N", "", peak, 1, kWhen, {grain}, 1}};
+}
+
+std::vector<std::string> loaded_names(const Scene& s) {
+  std::vector<std::string> names;
+  for (const int surface : loaded_surfaces(s)) {
+    const Obstacle* o = obstacle_of(s, surface);
+    names.push_back(o ? o->name : kFaceNames[std::size_t(surface)]);
+  }
+  return names;
 }
 
 std::vector<ReadingColumn> body_columns(const std::string& name) {

@@ -21,6 +21,8 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
       if (b.from_file() && !fs::exists(fs::path(folder) / b.path, error)) return b.path;
     for (const std::string& path : linked_paths(scene))
       if (!fs::exists(fs::path(folder) / path, error)) return path;
+    for (const Comparison& c : scene.compare)
+      if (!fs::exists(fs::path(folder) / c.data, error)) return c.data;
     return std::string();
   };
   const std::string file = missing(then);

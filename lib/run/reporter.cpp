@@ -24,6 +24,15 @@ std::string passed_through_text(const Scene& s, const Diagnostics& m, double sha
       m.unresolved, 100 * share, kResolvedWay, m.relative_way_max, remedy);
 }
 
+/// The readings of the whole run beside measurements.
+std::vector<StoredComparison> compared(RunParts& run) {
+  if (run.start.comparisons.empty()) return {};
+  run.writer->sync();
+  const RunReader file(run.folder.file(kRunFile));
+  return compare_all(run.start.comparisons,
+                     [&](const Quantity& q) { return read_quantity(file, q); });
+}
+
 }  // namespace
 
 Reporter::Reporter(RunParts& run, const Monitor& monitor)
@@ -61,6 +70,7 @@ void Reporter::end(Session& session) {
   }
   all_ = run_.start.warnings;
   const bool finished = !monitor_.event() && session.update() == run_.schedule.updates;
+  run_.compared = compared(run_);
   for (const Warning& w : found(finished)) all_.push_back(w);
 }
 
@@ -148,6 +158,9 @@ std::vector<Warning> Reporter::found(bool end) const {
          fmt::format("{} leaves fluid no way out: a particle is {:.2g} m behind its surface; move "
                      "it elsewhere or more slowly",
                      run_.scene.obstacles.empty() ? "a wall" : "an obstacle", m.penetration)});
+  for (const StoredComparison& c : run_.compared)
+    if (const std::string note = note_of(c); end && !note.empty())
+      list.push_back({"compare " + c.name, "compare " + c.name + ": " + note});
   if (left_ > 0)
     list.push_back(
         {"left",

@@ -42,8 +42,9 @@ struct RunParts {
   double drawing_seconds = 0;  ///< s, spent drawing in parallel with the run
   double compression_max = 0;  ///< largest over all measurements
   std::int64_t frames_written = 0, pictures_drawn = 0, bytes = 0;
-  std::string status{};       ///< as in run.vtkhdf: finished, stopped, diverged
-  std::string stop_reason{};  ///< "SIGTERM", ...
+  std::string status{};                      ///< as in run.vtkhdf: finished, stopped, diverged
+  std::string stop_reason{};                 ///< "SIGTERM", ...
+  std::vector<StoredComparison> compared{};  ///< with measurements, at the end
 };
 
 /// Reports progress, and warnings of a run when they arise.

@@ -220,6 +220,8 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
     out +=
         fmt::format("not finite          {} particles at the end, left out of the figures above\n",
                     last.non_finite);
+  if (!run.compared.empty())
+    out += "compared with measurements (run, data)\n" + comparisons_text(run.compared);
   if (plan.tolerance > 0)
     out += fmt::format(
         "iterations          {:.3g} per substep on average, at most {}, for a tolerance of {:.4g} "

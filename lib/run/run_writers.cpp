@@ -235,6 +235,7 @@ void Saving::end(Session& session) {
     run_.clock.begin();
     RunEnding ending{run_.status, run_.stop_reason, u, {}};
     for (const Warning& w : reporter_.warnings()) ending.warnings.push_back(w.text);
+    ending.comparisons = run_.compared;
     run_.writer->finish(ending);
     run_.frames_written = run_.writer->frames_written();
     run_.bytes = run_.writer->bytes_written();

@@ -62,6 +62,13 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
   };
   if (options.fits) plan({});  // before particles are examined
   plan(start_neighbors(points, particles));
+  if (options.measured && !scene.compare.empty() && !scene.output)
+    bad_input("compare",
+              "its readings are those of run.vtkhdf, which the scene does not write; add output: "
+              "{every: 0.1}");
+  if (options.measured)
+    start.comparisons = read_comparisons(scene.compare, readings_of(start.plan.columns),
+                                         scene.time.end, start.loaded.folder);
   if (options.warnings) start.warnings = scene_warnings(points, particles);
   if (options.strict && !start.warnings.empty())
     throw Error(ExitCode::difference, "--strict: " + warning_lines(start.warnings));

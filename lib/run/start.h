@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/base/log.h"
+#include "lib/data/comparison.h"
 #include "lib/program/plan.h"
 #include "lib/run/run_folder.h"
 #include "lib/run/stop_token.h"
@@ -25,6 +26,7 @@ struct PrepareOptions {
   bool warnings = false;              ///< of the scene
   bool strict = false;                ///< they are an error
   bool particles = true;              ///< are made
+  bool measured = false;              ///< read what the scene's readings are compared with
   std::function<void()> when_read{};  ///< called before what takes long
   /// Gets lines about the progress of what takes long, at times from threads, one at a time.
   std::function<void(const std::string&)> progress{};
@@ -36,14 +38,15 @@ struct Start {
   Particles particles{};    ///< on several ranks without positions and velocities
   ParticlePieces pieces{};  ///< on several ranks: these
   std::vector<Warning> warnings{};
-  std::vector<std::string> notes{};  ///< changes to the particles, for the log
+  std::vector<DataComparison> comparisons{};  ///< with PrepareOptions::measured
+  std::vector<std::string> notes{};           ///< changes to the particles, for the log
   const Scene& scene() const { return loaded.scene; }
 };
 
 /// Opens each particle file of the scene once. Its motions have been read (read_linked_files()).
 /// Throws, in this order, what StartPoints, count_particles(), `when_read` and make_plan() throw,
-/// Error(unavailable) as refuse_if_too_large(), Error(difference) for warnings where they are
-/// errors, and what emit_particles() throws.
+/// what read_comparisons() throws, Error(unavailable) as refuse_if_too_large(), Error(difference)
+/// for warnings where they are errors, and what emit_particles() throws.
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
 /// The same for a scene without a file; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});

@@ -11,7 +11,7 @@ namespace pbf::run_module {
 
 /// `kind`: units, step, speed, motion, table, obstacles, thin, wall, collision, overlap,
 /// over-dense, seam, relaxation, output (of a scene); compressed, energy, stirred, passed_through,
-/// closed_in, left (of a run). A list has at most one warning of each kind.
+/// closed_in, left, compare NAME (of a run). A list has at most one warning of each kind.
 struct Warning {
   std::string kind, text;
 };

@@ -15,6 +15,7 @@ KeyRows emitter_rows();
 KeyRows motion_rows();
 KeyRows moved_rows();
 KeyRows free_rows();
+KeyRows compare_rows();
 KeyRows run_rows();
 
 namespace {
@@ -168,9 +169,10 @@ std::map<const void*, std::string> KeyTable::names(const Object& object) const {
 
 const KeyTable& scene_table() {
   static Scene defaults;
-  static const KeyTable table({start_rows(), obstacle_rows(), gauge_rows(), emitter_rows(),
-                               motion_rows(), moved_rows(), free_rows(), run_rows()},
-                              object(defaults));
+  static const KeyTable table(
+      {start_rows(), obstacle_rows(), gauge_rows(), emitter_rows(), motion_rows(), moved_rows(),
+       free_rows(), compare_rows(), run_rows()},
+      object(defaults));
   return table;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lib/scene/coloring.h"
+#include "lib/scene/compare.h"
 #include "lib/scene/emitter.h"
 #include "lib/scene/gauge.h"
 #include "lib/scene/motion.h"
@@ -224,6 +225,7 @@ struct Scene {
   std::vector<Gauge> gauges;
   std::vector<Emitter> emitters;
   std::vector<Sink> sinks;
+  std::vector<Comparison> compare;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
   std::optional<TankMotion> tank_motion;
   std::optional<Settle> settle;

@@ -130,5 +130,6 @@ void check_gauges(const PlacedScene& placed, Problems& problems);
 void check_emitters(const PlacedScene& placed, Problems& problems);
 void check_periodic(const PlacedScene& placed, Problems& problems);
 void check_viscosity(const PlacedScene& placed, Problems& problems);
+void check_compare(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::scene_module

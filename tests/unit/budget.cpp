@@ -15,9 +15,10 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2270},      {"kernels", 7640},   {"lib/base", 1850},    {"lib/campaign", 3850},
-    {"lib/exec", 6900}, {"lib/io", 4130},    {"lib/program", 9020}, {"lib/render", 3950},
-    {"lib/run", 6170},  {"lib/scene", 9130}, {"lib/solver", 3070},  {"lib/verify", 2320},
+    {"app", 2430},        {"kernels", 7640},  {"lib/base", 1850},  {"lib/campaign", 3960},
+    {"lib/data", 1190},   {"lib/exec", 6900}, {"lib/io", 4240},    {"lib/program", 9060},
+    {"lib/render", 3950}, {"lib/run", 6170},  {"lib/scene", 9400}, {"lib/solver", 3070},
+    {"lib/verify", 2160},
 };
 constexpr int kLongestFile = 300;
 

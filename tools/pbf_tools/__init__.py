@@ -10,6 +10,7 @@ from .errors import (BadInput, Diverged, FileError, MissingPackage, NotThere, Pb
 if TYPE_CHECKING:
     from . import plot
     from .bodies import Body
+    from .comparison import compare_data
     from .fields import Field, Frame
     from .gauges import Gauge
     from .run_file import Run, open
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BadInput", "Batch", "Body", "Diverged", "Field", "FileError", "Frame", "Gauge",
            "MissingPackage", "NotThere", "PbfError", "PbfWarning", "Run", "Stopped", "Table",
-           "ToolError", "UnknownName", "batch", "open", "plan", "plot", "read_batch", "read_csv",
+           "ToolError", "UnknownName", "batch", "compare_data", "open", "plan", "plot", "read_batch", "read_csv",
            "run"]
 __version__ = "0.1.0"
 
@@ -28,7 +29,7 @@ __version__ = "0.1.0"
 _PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "gauges",
            "Run": "run_file", "open": "run_file", "plan": "simulate", "run": "simulate",
            "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table",
-           "read_csv": "table", "plot": ""}
+           "read_csv": "table", "plot": "", "compare_data": "comparison"}
 
 
 def __getattr__(name: str) -> Any:

@@ -116,6 +116,13 @@ class Run:
         return f"{self.name}, {i['particles']} particles, {i['backend']} {i['precision']} " \
                f"({i['device']})"
 
+    @property
+    def compare(self) -> dict[str, dict[str, Any]]:
+        """What the run has compared with measurements, by name: rms, correlation, lag_s, peak ...;
+        nan where there is none, and then a `note` says why."""
+        from .comparison import stored
+        return self._read(stored, "cannot read the comparisons")
+
     def __getitem__(self, name: str) -> Field:
         if name not in self._index.fields:
             raise UnknownName(f"{self.path}: {unknown('field', name, self.fields)}")

@@ -98,6 +98,14 @@ Scene unlike_default() {
   slot.size = {1.0 / 7};
   slot.path = "odd name #4: [v].csv";
   s.emitters = {jet, slot};
+  Comparison c;
+  c.name = "post", c.load = "z_min", c.component = "torque_y", c.data = "post.csv",
+  c.column = "M_mNm";
+  c.time_column = "T", c.time_scale = 0.5, c.scale = 1e-3, c.offset = 0.25, c.average = 0.02;
+  c.between = {0.5, 0.75}, c.lag = "fit", c.lag_range = {-0.25, 0.5}, c.threshold = 0.125;
+  Comparison front;
+  front.log = "front_x", front.data = "other/run.vtkhdf", front.lag = "post";
+  s.compare = {c, front};
   Sink drain;
   drain.name = "drain, \"b\"";
   drain.min = {-1.0 / 3, -1, 2};
@@ -270,20 +278,23 @@ TEST_CASE("table of keys: every default lies in its own range") {
     obstacle.motion.emplace();
     obstacle.free.emplace();
     Emitter emitter;
+    Comparison comparison;
     Node node;
     const Block* list = key.block->list_around();
     const bool of_body = list && list->path == "bodies[]", of_scene = !list,
-               of_emitter = list && list->path == "emitters[]";
+               of_emitter = list && list->path == "emitters[]",
+               of_comparison = list && list->path == "compare[]";
     const std::string text = value_text(key, of_scene ? object(defaults) : key.standard);
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
     node.text = text;
     CAPTURE(key.path, text);
     CHECK(read_field(key, node,
-                     key.field(of_scene     ? object(scene)
-                               : of_body    ? object(body)
-                               : of_emitter ? object(emitter)
-                                            : object(obstacle)))
+                     key.field(of_scene        ? object(scene)
+                               : of_body       ? object(body)
+                               : of_emitter    ? object(emitter)
+                               : of_comparison ? object(comparison)
+                                               : object(obstacle)))
               .empty());
   }
 }

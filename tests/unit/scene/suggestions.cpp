@@ -140,7 +140,7 @@ TEST_CASE("suggestions: walls by the names that people give them") {
 TEST_CASE("suggestions: nothing where nothing is near") {
   for (const char* path :
        {"qqqqqqqqqqqq", "gui", "mpi", "x", "", "foo", "solver.abc", "bodies[].size", "temperature",
-        "solver.preconditioner", "fluid.name_of_it", "cfl_number", "log", "tes", "wind"})
+        "solver.preconditioner", "fluid.name_of_it", "cfl_number", "logbook", "tes", "wind"})
     CHECK(suggested(path) == "");
 }
 

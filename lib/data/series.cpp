@@ -1,12 +1,11 @@
-#include "lib/verify/compare_data.h"
+#include "lib/data/series.h"
 
 #include <fmt/core.h>
 #include <algorithm>
-#include <cmath>
 
 #include "lib/base/error.h"
 
-namespace pbf::verify_module {
+namespace pbf::data_module {
 namespace {
 
 struct CommonReadings {
@@ -28,16 +27,19 @@ NextReading next_reading(const TimeSeries& s, double t) {
   return {std::size_t(next - s.time.begin()), next != s.time.end() && *next <= t + rounding(t)};
 }
 
-CommonReadings common_readings(const TimeSeries& own, const TimeSeries& reference, double from) {
+CommonReadings common_readings(const TimeSeries& own, const TimeSeries& reference,
+                               const SeriesOptions& o) {
   CommonReadings out;
   for (std::size_t k = 0; k < reference.time.size(); ++k) {
-    const double t = reference.time[k], there = reference.value[k];
-    if (t < from - rounding(from) || !std::isfinite(there)) continue;
+    const double t = reference.time[k];
+    if (t < o.from - rounding(o.from) || t > o.to + rounding(o.to)) continue;
+    const double there = mean_about(reference, t, o.average);
+    if (!std::isfinite(there)) continue;
     ++out.times;
     out.low = std::min(out.low, there), out.high = std::max(out.high, there);
-    const double here = value_at(own, t);
+    const double here = mean_about(own, t + o.lag, o.average);
     if (!std::isfinite(here)) continue;
-    if (!next_reading(own, t).at) ++out.interpolated;
+    if (!next_reading(own, t + o.lag).at) ++out.interpolated;
     out.own.push_back(here), out.reference.push_back(there);
   }
   return out;
@@ -70,13 +72,48 @@ double value_at(const TimeSeries& s, double t) {
   return s.value[i - 1] + part * (s.value[i] - s.value[i - 1]);
 }
 
-CommonTimes common_times(const TimeSeries& own, const TimeSeries& reference, double from) {
-  const CommonReadings both = common_readings(own, reference, from);
+Area area_under(const TimeSeries& s, double from, double to) {
+  Area out;
+  for (std::size_t i = std::max<std::size_t>(1, next_reading(s, from).index); i < s.time.size();
+       ++i) {
+    const double begin = s.time[i - 1], end = s.time[i];
+    if (begin >= to) break;
+    const double a = std::max(from, begin), b = std::min(to, end);
+    if (!(b > a) || !std::isfinite(s.value[i])) continue;
+    double mean = s.value[i];
+    if (!s.means) {
+      const double slope = (s.value[i] - s.value[i - 1]) / (end - begin);
+      mean = s.value[i - 1] + slope * (0.5 * (a + b) - begin);
+    }
+    if (!std::isfinite(mean)) continue;
+    out.integral += mean * (b - a);
+    out.length += b - a;
+  }
+  return out;
+}
+
+double mean_about(const TimeSeries& s, double t, double window) {
+  if (!(window > 0)) return value_at(s, t);
+  const Area area = area_under(s, t - 0.5 * window, t + 0.5 * window);
+  return area.length >= 0.5 * window * (1 - 1e-9) ? area.integral / area.length : NAN;
+}
+
+std::vector<double> averaged(const TimeSeries& s, double window) {
+  std::vector<double> out(s.value.begin(), s.value.end());
+  for (std::size_t k = 0; window > 0 && k < out.size(); ++k)
+    out[k] = mean_about(s, s.time[k], window);
+  return out;
+}
+
+CommonTimes common_times(const TimeSeries& own, const TimeSeries& reference,
+                         const SeriesOptions& options) {
+  const CommonReadings both = common_readings(own, reference, options);
   return {both.times, both.own.size()};
 }
 
-SeriesDifference compare_series(const TimeSeries& own, const TimeSeries& reference, double from) {
-  const CommonReadings both = common_readings(own, reference, from);
+SeriesDifference compare_series(const TimeSeries& own, const TimeSeries& reference,
+                                const SeriesOptions& options) {
+  const CommonReadings both = common_readings(own, reference, options);
   SeriesDifference out;
   out.points = both.own.size();
   out.interpolated = both.interpolated;
@@ -98,4 +135,4 @@ SeriesDifference compare_series(const TimeSeries& own, const TimeSeries& referen
   return out;
 }
 
-}  // namespace pbf::verify_module
+}  // namespace pbf::data_module

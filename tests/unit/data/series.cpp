@@ -3,16 +3,16 @@
 #include <limits>
 
 #include "lib/base/error.h"
-#include "lib/verify/compare_data.h"
+#include "lib/data/series.h"
 #include "tests/support/catch.h"
 
 using namespace pbf;
 
 namespace {
 
-struct Readings {
+struct Samples {
   std::vector<double> time, value;
-  Readings(std::size_t n, double step, auto&& f) {
+  Samples(std::size_t n, double step, auto&& f) {
     for (std::size_t k = 0; k < n; ++k) time.push_back(double(k) * step), value.push_back(f(k));
   }
   TimeSeries series() const { return {time, value}; }
@@ -38,8 +38,8 @@ TEST_CASE("between two readings a value is on the line, at a reading it is the r
 
 TEST_CASE("the RMS of a known difference is known, in the unit and relative to the range") {
   // Off by 3 and by 4 in turns: RMS sqrt(12.5), mean 3.5; the reference goes from 0 to 19.
-  const Readings reference(20, 0.1, at);
-  const Readings own(20, 0.1, [](std::size_t k) { return double(k) + (k % 2 ? 4 : 3); });
+  const Samples reference(20, 0.1, at);
+  const Samples own(20, 0.1, [](std::size_t k) { return double(k) + (k % 2 ? 4 : 3); });
   const SeriesDifference d = compare_series(own.series(), reference.series());
   CHECK(d.rms == Approx(std::sqrt(12.5)));
   CHECK(d.bias == Approx(3.5));
@@ -47,13 +47,13 @@ TEST_CASE("the RMS of a known difference is known, in the unit and relative to t
   CHECK(d.rms_relative.value() == Approx(std::sqrt(12.5) / 19));
   CHECK(d.correlation.value() > 0.99);
   CHECK(d.points == 20);
-  const Readings falls(20, 0.1, [](std::size_t k) { return -2 * double(k); });
+  const Samples falls(20, 0.1, [](std::size_t k) { return -2 * double(k); });
   CHECK(compare_series(falls.series(), reference.series()).correlation.value() == Approx(-1));
 }
 
 TEST_CASE("a series has no difference from itself, and none from its own line at other times") {
-  const Readings fine(41, 0.05, [](std::size_t k) { return 0.3 * double(k); });
-  const Readings coarse(11, 0.2, [](std::size_t k) { return 1.2 * double(k); });
+  const Samples fine(41, 0.05, [](std::size_t k) { return 0.3 * double(k); });
+  const Samples coarse(11, 0.2, [](std::size_t k) { return 1.2 * double(k); });
   const SeriesDifference d = compare_series(fine.series(), fine.series());
   CHECK(d.rms == 0);
   CHECK(d.rms_relative == 0);
@@ -66,17 +66,17 @@ TEST_CASE("a series has no difference from itself, and none from its own line at
 }
 
 TEST_CASE("times before `from` do not count, neither for the error nor for the range") {
-  const Readings reference(40, 0.1, [](std::size_t k) { return k < 20 ? 1000.0 : double(k); });
-  const Readings own(40, 0.1, [](std::size_t k) { return k < 20 ? 0 : double(k) + 2; });
-  const SeriesDifference d = compare_series(own.series(), reference.series(), 2);
+  const Samples reference(40, 0.1, [](std::size_t k) { return k < 20 ? 1000.0 : double(k); });
+  const Samples own(40, 0.1, [](std::size_t k) { return k < 20 ? 0 : double(k) + 2; });
+  const SeriesDifference d = compare_series(own.series(), reference.series(), {.from = 2});
   CHECK(d.points == 20);
   CHECK(d.rms == Approx(2));
   CHECK(d.range == 19);
 }
 
 TEST_CASE("a reference that never changes has an RMS, but no share of its range") {
-  const Readings still(12, 0.1, [](std::size_t) { return 5.0; });
-  const SeriesDifference d = compare_series(Readings(12, 0.1, at).series(), still.series());
+  const Samples still(12, 0.1, [](std::size_t) { return 5.0; });
+  const SeriesDifference d = compare_series(Samples(12, 0.1, at).series(), still.series());
   CHECK(d.rms > 0);
   CHECK(d.range == 0);
   CHECK_FALSE(d.rms_relative);
@@ -85,7 +85,7 @@ TEST_CASE("a reference that never changes has an RMS, but no share of its range"
 
 TEST_CASE("too few common readings are an error with their numbers, never NaN") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto error = [](const Readings& own, const Readings& reference) {
+  const auto error = [](const Samples& own, const Samples& reference) {
     try {
       compare_series(own.series(), reference.series());
     } catch (const Error& e) {
@@ -94,19 +94,18 @@ TEST_CASE("too few common readings are an error with their numbers, never NaN") 
     }
     return std::string("accepted");
   };
-  const Readings all(30, 0.1, at);
-  CHECK(error(Readings(9, 0.1, at), Readings(9, 0.1, at)).rfind("9 of the reference's 9 rea", 0) ==
+  const Samples all(30, 0.1, at);
+  CHECK(error(Samples(9, 0.1, at), Samples(9, 0.1, at)).rfind("9 of the reference's 9 rea", 0) ==
         0);
-  CHECK(error(Readings(10, 0.1, at), Readings(10, 0.1, at)) == "accepted");
-  CHECK(error(Readings(14, 0.1, at), all).rfind("14 of the reference's 30", 0) == 0);
-  CHECK(error(Readings(15, 0.1, at), all) == "accepted");
-  CHECK(error(Readings(30, 0.1, [&](std::size_t) { return nan; }), all).rfind("0 of the", 0) == 0);
-  CHECK(
-      error(all, Readings(30, 0.1, [&](std::size_t) { return nan; })).rfind("0 of the refer", 0) ==
-      0);
-  CHECK(error(all, Readings(0, 0.1, at)).rfind("0 of the reference's 0", 0) == 0);
+  CHECK(error(Samples(10, 0.1, at), Samples(10, 0.1, at)) == "accepted");
+  CHECK(error(Samples(14, 0.1, at), all).rfind("14 of the reference's 30", 0) == 0);
+  CHECK(error(Samples(15, 0.1, at), all) == "accepted");
+  CHECK(error(Samples(30, 0.1, [&](std::size_t) { return nan; }), all).rfind("0 of the", 0) == 0);
+  CHECK(error(all, Samples(30, 0.1, [&](std::size_t) { return nan; })).rfind("0 of the refer", 0) ==
+        0);
+  CHECK(error(all, Samples(0, 0.1, at)).rfind("0 of the reference's 0", 0) == 0);
   // A gauge that is dry at first is compared where both are wet.
-  const Readings dry(30, 0.1, [&](std::size_t k) { return k < 10 ? nan : double(k) + 1; });
+  const Samples dry(30, 0.1, [&](std::size_t k) { return k < 10 ? nan : double(k) + 1; });
   const SeriesDifference d = compare_series(dry.series(), all.series());
   CHECK(d.points == 20);
   CHECK(d.rms == Approx(1));

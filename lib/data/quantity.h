@@ -1,0 +1,50 @@
+// Readings of a run by name: where they are in its file, in which unit.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/io/run_file.h"
+#include "lib/program/column.h"
+#include "lib/scene/compare.h"
+
+namespace pbf::data_module {
+
+/// A column of readings.
+struct ReadingSite {
+  std::string unit;
+  int components = 1;
+  bool means = false;  ///< each is the mean since the one before (TimeSeries::means)
+};
+
+/// The readings that a run has: `find` by path below /pbf ("gauges/H2", "log/front_x"), `names` of
+/// all paths, for messages.
+struct Readings {
+  std::function<std::optional<ReadingSite>(const std::string& path)> find;
+  std::function<std::vector<std::string>()> names;
+};
+/// Those that a run will have; columns: of its plan.
+Readings readings_of(const std::vector<ReadingColumn>& columns);
+/// Those of a file. The reader must outlive them.
+Readings readings_of(const RunReader& file);
+
+/// A reading that is compared.
+struct Quantity {
+  std::string path;  ///< "gauges/U", "log/load/post/force_x"
+  int component = 0;
+  ReadingSite site;
+  /// How a column of a table is named that holds it, without its unit: "U_x"; "load_post_x", ...
+  std::vector<std::string> names;
+};
+/// That of an entry of `compare`. Throws Error(bad_input) beginning with `key` if there is none.
+Quantity quantity_of(const Comparison& entry, const Readings& readings, const std::string& key);
+
+/// Its readings in a run.
+struct QuantitySeries {
+  std::vector<double> time, value;  ///< s, in its unit
+};
+QuantitySeries read_quantity(const RunReader& file, const Quantity& quantity);
+
+}  // namespace pbf::data_module
