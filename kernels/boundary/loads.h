@@ -32,16 +32,24 @@ struct Load {
   double impulse[3] = {0, 0, 0};  ///< h/s
   /// h^2/s, about the domain's lower corner; for a moving obstacle about its center.
   double moment[3] = {0, 0, 0};
-  double peak = 0;  ///< h/s^2, largest mean force of one update
-  double time = 0;  ///< s
-  double work = 0;  ///< h^2/s^2, done by a moving obstacle; lost by a free body
+  double peak = 0;              ///< h/s^2, largest mean force of one update
+  double time = 0;              ///< s
+  double work = 0;              ///< h^2/s^2, done by a moving obstacle; lost by a free body
+  double total[3] = {0, 0, 0};  ///< h/s, the impulse since the start
 
+  /// After a reading: the means begin again.
+  PBF_HD Load begun_again() const {
+    Load next;
+    for (int k = 0; k < 3; ++k) next.total[k] = total[k];
+    return next;
+  }
   /// Calls f for every number, in the order of files.
   template <class Self, class F>
   static constexpr void each(Self& s, F&& f) {
     for (auto& x : s.impulse) f(x);
     for (auto& x : s.moment) f(x);
     f(s.peak), f(s.time), f(s.work);
+    for (auto& x : s.total) f(x);
   }
 };
 
@@ -204,6 +212,7 @@ struct LoadPass {
     }
     for (int k = 0; k < 3; ++k) {
       to.impulse[k] += impulse[k];
+      to.total[k] += impulse[k];
       to.moment[k] += moment[k];
       squares += impulse[k] * impulse[k];
     }

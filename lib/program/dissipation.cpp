@@ -20,6 +20,8 @@ bool dissipates(const Scene& s, Dissipation by) {
       return s.vorticity && s.vorticity->epsilon != 0;
     case Dissipation::damping:
       return s.solver.velocity_damping != 1;
+    case Dissipation::sponge:
+      return !s.damping.empty();
   }
   return false;
 }

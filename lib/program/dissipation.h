@@ -13,9 +13,9 @@ namespace pbf::program_module {
 struct Plan;
 
 /// In the order of their columns.
-enum class Dissipation { viscosity, friction, hyperviscosity, confinement, damping };
-inline constexpr const char* kDissipationNames[] = {"viscosity", "friction", "hyperviscosity",
-                                                    "confinement", "damping"};
+enum class Dissipation { viscosity, friction, hyperviscosity, confinement, damping, sponge };
+inline constexpr const char* kDissipationNames[] = {"viscosity",   "friction", "hyperviscosity",
+                                                    "confinement", "damping",  "sponge"};
 
 /// Whether the scene has this one.
 bool dissipates(const Scene& scene, Dissipation by);

@@ -15,6 +15,7 @@
 #include "lib/program/features/loads.h"
 #include "lib/program/features/motion.h"
 #include "lib/program/features/solids.h"
+#include "lib/program/features/sponge.h"
 #include "lib/program/features/time_order.h"
 #include "lib/program/features/viscosity.h"
 
@@ -43,9 +44,9 @@ struct FeatureList {
   using With = FeatureList<Fs..., More...>;
 };
 
-using Features =
-    FeatureList<Motion, NearSolids, FreeBodies, Constraint, Levels, Correction, Emission,
-                Viscosities, VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
+using Features = FeatureList<Motion, NearSolids, FreeBodies, Constraint, Levels, Correction,
+                             Emission, Viscosities, VorticityConfinement, Sponges, Loads, Gauges,
+                             StepLengths, Hyperviscosities>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::PBF_VARIANT

@@ -80,7 +80,8 @@ std::vector<ReadingColumn> load_columns(const std::string& of, double grain, dou
   constexpr Series kWhen = Series::measures;
   return {{"load", of, "force", "N", "", mean, 3, kWhen, {grain}, 1},
           {"load", of, "torque", "N m", "", mean, 3, kWhen, {3 * arm * grain}, arm},
-          {"load", of, "force_peak", "N", "", peak, 1, kWhen, {grain}, 1}};
+          {"load", of, "force_peak", "N", "", peak, 1, kWhen, {grain}, 1},
+          {"load", of, "impulse", "N s", "", total, 3, kWhen, {grain}, 1}};
 }
 
 std::vector<std::string> loaded_names(const Scene& s) {
@@ -153,6 +154,9 @@ std::vector<double> load_readings(const std::vector<Load>& loads, const Scene& s
     out.insert(out.end(), force, force + 3);
     out.insert(out.end(), torque, torque + 3);
     out.push_back(plan.mass * h * load.peak);
+    double total[3];
+    for (int k = 0; k < 3; ++k) total[of[k]] = plan.mass * h * load.total[k];
+    out.insert(out.end(), total, total + 3);
   }
   return out;
 }

@@ -34,6 +34,7 @@ class Checker : public SceneRules {
     check_emitters(p_, problems_);
     check_periodic(p_, problems_);
     check_viscosity(p_, problems_);
+    check_sponges(p_, problems_);
     check_compare(p_, problems_);
     check_time();
     check_solver();

@@ -6,6 +6,7 @@ namespace pbf::scene_module {
 #define KEY(member) MEMBER(Scene, member)
 #define EMITTER(member) MEMBER_OF(emitters, Emitter, member)
 #define SINK(member) MEMBER_OF(sinks, Sink, member)
+#define SPONGE(member) MEMBER_OF(damping, Sponge, member)
 
 KeyRows emitter_rows() {
   return {
@@ -22,7 +23,12 @@ KeyRows emitter_rows() {
                   {.entry_name = "sink",
                    .remark = "at the start of the update after they came in",
                    .example = "{name: drain, min: [0, 0, 0], max: [0.1, 1, 0.1]}"},
-                  exact("all solvers of a comparison have the same boxes"))},
+                  exact("all solvers of a comparison have the same boxes")),
+       list_block(
+           KEY(damping), "Sponges: zones in which velocities decay, so that waves end there",
+           {.entry_name = "zone",
+            .remark = "v becomes v/(1 + rate s^profile dt)",
+            .example = "{name: end, min: [6, 0, 0], max: [8, 1, 1], toward: x_max, rate: 10}"})},
       {key(EMITTER(name), plain, "Name, in the columns of the log.", required),
        key(EMITTER(shape), one_of({"disc", "rectangle"}),
            "Shape of the opening; decides which keys it has. In two dimensions both are a line.",
@@ -60,6 +66,20 @@ KeyRows emitter_rows() {
            required, flat(FlatY::low), by_center),
        key(SINK(max), number("m", kCoordinate), "Upper corner of the box.", required,
            flat(FlatY::high), by_center),
+       key(SPONGE(name), plain, "Name, for messages.", required),
+       key(SPONGE(min), number("m", kCoordinate),
+           "Lower corner of the zone. In place of min and max it may have center and size.",
+           required, flat(FlatY::low), by_center),
+       key(SPONGE(max), number("m", kCoordinate), "Upper corner of the zone.", required,
+           flat(FlatY::high), by_center),
+       key(SPONGE(toward), one_of({kFaceNames.begin(), kFaceNames.end()}),
+           "The face of the zone towards which s grows from 0 to 1."),
+       key(SPONGE(rate), number("1/s", {0, 1e12}),
+           "Rate of the decay where s is 1. auto: 15 over the period of the first obstacle that "
+           "oscillates.",
+           automatic),
+       key(SPONGE(profile), number("", {1, 4}), "The power of s, a whole number."),
+       key(SPONGE(axes), one_of({"x", "y", "z"}), "Velocities along these axes decay."),
        key(KEY(capacity), number("", {0, 1073741823}),
            "Most particles at a time in a scene with emitters or sinks; more stop the run. auto: "
            "all that may ever be.",

@@ -204,6 +204,17 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+/// A zone in which velocities decay as v/(1 + rate s^profile dt) (lib/scene/sponge.h).
+struct Sponge {
+  std::string name;
+  Double3 min{}, max{};         ///< m
+  std::string toward{"x_max"};  ///< a face: s grows from 0 to 1 towards that of the zone
+  std::optional<double> rate;   ///< 1/s; absent: from the period of what makes waves
+  int profile = 2;
+  std::vector<std::string> axes{"x", "y", "z"};  ///< whose velocities decay
+  bool operator==(const Sponge&) const = default;
+};
+
 struct Render {
   double every = 0.1;  ///< s between pictures, rounded to whole frames of `output`
   std::array<int, 2> size{1280, 720};
@@ -226,6 +237,7 @@ struct Scene {
   std::vector<Emitter> emitters;
   std::vector<Sink> sinks;
   std::vector<Comparison> compare;
+  std::vector<Sponge> damping;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
   std::optional<TankMotion> tank_motion;
   std::optional<Settle> settle;

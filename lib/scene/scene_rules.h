@@ -130,6 +130,7 @@ void check_gauges(const PlacedScene& placed, Problems& problems);
 void check_emitters(const PlacedScene& placed, Problems& problems);
 void check_periodic(const PlacedScene& placed, Problems& problems);
 void check_viscosity(const PlacedScene& placed, Problems& problems);
+void check_sponges(const PlacedScene& placed, Problems& problems);
 void check_compare(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::scene_module

@@ -15,10 +15,13 @@ namespace pbf::PBF_VARIANT {
 template <class C>
 std::vector<Load> read_loads(C& c, std::int64_t first, std::int64_t count, Interval interval) {
   if (count <= 0) return {};
-  std::vector<Load> now(std::size_t(count), Load{}), none(now.size());
+  std::vector<Load> now(std::size_t(count), Load{});
   Load* from = c.data(field::loads) + first;
   c.exec.to_host(from, now.size(), now.data());
-  if (interval == Interval::ends) c.exec.to_device(none.data(), none.size(), from);
+  if (interval != Interval::ends) return now;
+  std::vector<Load> next;
+  for (const Load& load : now) next.push_back(load.begun_again());
+  c.exec.to_device(next.data(), next.size(), from);
   return now;
 }
 /// The loads of walls and obstacles, whose rows are the first.

@@ -79,6 +79,11 @@ TEST_CASE("viscosity, confinement and damping book what the particles lose or ga
     c.scene.time.order = GENERATE(TimeOrder::first, TimeOrder::second);
     by = "damping";
   }
+  SECTION("sponge") {
+    c.scene.damping = {{"all", {-2, -2, -2}, {2, 2, 2}, "x_max", 4.0, 1, {"x", "z"}}};
+    c.scene.time.order = GENERATE(TimeOrder::first, TimeOrder::second);
+    by = "sponge";
+  }
   CAPTURE(by);
   auto solver = make(c);
   CHECK(taken(c, *solver, by) == 0);

@@ -1,6 +1,10 @@
 // Loads on the walls (domain.loads) against what the particles' momentum says, on every backend
 // and precision.
 
+#include <array>
+#include <cmath>
+#include <map>
+
 #include "tests/support/backend.h"
 #include "tests/support/catch.h"
 
@@ -200,5 +204,31 @@ TEST_CASE("loads do not depend on threads, pass-by-pass updates, or being handed
     b->set_state(there);
     b->step(30, {});
     backend_test::check_loads(*b, expected);
+  }
+}
+
+TEST_CASE(
+    "the impulse of a load since the start is that of its means, however often they are read") {
+  const Case c = GENERATE(false, true) ? splash() : flat_splash();
+  std::vector<WallLoad> last;
+  for (const int every : {1, 4, 40}) {
+    auto solver = make(c);
+    std::map<std::string, std::array<double, 3>> sum;
+    for (int u = 0; u < 40; u += every) {
+      solver->step(every);
+      // A reading between two that end an interval changes nothing.
+      if (u == 20) loads_of(c, *solver, pbf::Interval::goes_on);
+      for (const WallLoad& l : loads_of(c, *solver, pbf::Interval::ends))
+        for (std::size_t k = 0; k < 3; ++k) sum[l.wall][k] += l.force[k] * every * kStep;
+    }
+    const std::vector<WallLoad> end = loads_of(c, *solver);
+    for (std::size_t w = 0; w < end.size(); ++w)
+      for (std::size_t k = 0; k < 3; ++k) {
+        CAPTURE(every, end[w].wall, k);
+        CHECK(end[w].impulse[k] == Approx(sum[end[w].wall][k]).margin(1e-9));
+        if (!last.empty()) CHECK(end[w].impulse[k] == last[w].impulse[k]);
+      }
+    last = end;
+    CHECK(std::fabs(sum["z_min"][2]) > 0.01);
   }
 }

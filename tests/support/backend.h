@@ -35,7 +35,7 @@ using pbf::Series;
 /// The readings of the loads of a wall or an obstacle, SI units.
 struct WallLoad {
   std::string wall;
-  double force[3], torque[3], peak;
+  double force[3], torque[3], peak, impulse[3];
 };
 inline std::vector<WallLoad> loads_of(const oracle_test::Case& c, pbf::Solver& solver,
                                       pbf::Interval interval = pbf::Interval::goes_on) {
@@ -47,8 +47,9 @@ inline std::vector<WallLoad> loads_of(const oracle_test::Case& c, pbf::Solver& s
       loads.push_back({column.of,
                        {r.at(k), r.at(k + 1), r.at(k + 2)},
                        {r.at(k + 3), r.at(k + 4), r.at(k + 5)},
-                       r.at(k + 6)});
-      k += 7;
+                       r.at(k + 6),
+                       {r.at(k + 7), r.at(k + 8), r.at(k + 9)}});
+      k += 10;
     } else if (column.kind == std::string("dissipation")) {
       ++k;
     }

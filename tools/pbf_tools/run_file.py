@@ -15,6 +15,7 @@ from .bodies import Bodies, read_bodies
 from .errors import BadInput, UnknownName, unknown
 from .fields import Field, Frames
 from .gauges import Gauges, read_gauges
+from .loads import Load, load_of
 from .run_path import run_path
 from .scene_text import name_in
 from .table import Table
@@ -115,6 +116,10 @@ class Run:
         i = self.info
         return f"{self.name}, {i['particles']} particles, {i['backend']} {i['precision']} " \
                f"({i['device']})"
+
+    def load(self, name: str) -> Load:
+        """The load of a wall or obstacle: `force`, `impulse`, `mean(window)`, `peak(window)`."""
+        return load_of(self.log, name, self.path)
 
     @property
     def compare(self) -> dict[str, dict[str, Any]]:
