@@ -45,7 +45,9 @@ const char* const kBatchHelp =
     "Every run is `pbf run --resume` in a folder of its own: what is finished (DONE is there, and\n"
     "run.vtkhdf is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
     "what was stopped or killed goes on, so the same command can be given again until all is\n"
-    "done. OUT/summary.csv has a row per run: its settings, why it ended, its last measures.\n"
+    "done. OUT/summary.csv and summary.json have a row per run: its settings, why it ended, its "
+    "last\n"
+    "measures.\n"
     "Every run is read and planned before the first one starts. SIGTERM, SIGINT and\n"
     "--max-walltime save all runs.\n"
     "Exit code 0 when all are finished, 75 when some are to go on, 6 when some failed.\n"
@@ -129,7 +131,9 @@ class Batch {
   }
 
   int finish() {
-    write_text_file(out_ + "/summary.csv", batch_summary(members_, ends_, out_), Naming::own);
+    const BatchSummary summary = batch_summary(members_, ends_, out_);
+    write_text_file(out_ + "/summary.csv", summary.csv(), Naming::own);
+    write_text_file(out_ + "/summary.json", summary.json(), Naming::own);
     std::size_t finished = 0, failed = 0;
     for (const auto& [name, end] : ends_) {
       finished += end.code == 0;
@@ -234,8 +238,10 @@ int command_batch(const BatchOptions& o) {
     check_members(members, overrides, o.base_folder, true);
   }
   make_folder(out);
-  require_own_file(out + "/summary.csv");
-  check_output("--out", out + "/summary.csv");
+  for (const char* name : {"/summary.csv", "/summary.json"}) {
+    require_own_file(out + name);
+    check_output("--out", out + name);
+  }
   watch_signals();
   if (one) members = {members[static_cast<std::size_t>(o.only)]};
   Batch batch(o, members, out, log);

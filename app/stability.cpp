@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -12,11 +13,13 @@
 #include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
+#include "lib/base/json.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
 #include "lib/base/shipped_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
+#include "lib/base/version.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
 #include "lib/run/signals.h"
@@ -29,10 +32,10 @@ struct StabilityCommandOptions : SceneOptions {
   std::string suite;               ///< empty: the suite that comes with the program
   std::string backend = "cpu", precision = "float";
   bool reduced = false, quiet = false;
-  int jobs = 0;            ///< cases at a time; 0: number of threads, 1 on a device
-  std::string csv, junit;  ///< paths, empty: none
-  std::string map, x, y;   ///< X_KEY,Y_KEY and their values; empty: no map
-  StabilityMap settings;   ///< of the map: iterations and limit
+  int jobs = 0;                  ///< cases at a time; 0: number of threads, 1 on a device
+  std::string csv, json, junit;  ///< paths, empty: none
+  std::string map, x, y;         ///< X_KEY,Y_KEY and their values; empty: no map
+  StabilityMap settings;         ///< of the map: iterations and limit
 };
 
 const char* const kStabilityHelp =
@@ -133,11 +136,25 @@ std::vector<Row> in_parallel(std::size_t n, int jobs, Log& log, const char* what
   return out;
 }
 
+/// The rows of a table as JSON, where --json asks for it. complete: nothing stopped it early.
+void write_json(const StabilityCommandOptions& o, const Table& table, bool complete, double seconds,
+                Json out) {
+  if (o.json.empty()) return;
+  out["version"] = build_info().version;
+  out["commit"] = build_info().commit;
+  out["complete"] = complete;
+  out["seconds"] = seconds;
+  out["rows"] = table.json();
+  write_text_file(o.json, json_text(out) + "\n");
+}
+
 int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
   for (const StabilityCase& c : cases) note_input(c.scene);  // so that outputs cannot replace it
   check_outputs("--csv", o.csv, "--junit", o.junit);
+  check_outputs("--csv", o.csv, "--json", o.json);
+  check_outputs("--json", o.json, "--junit", o.junit);
   const Stopwatch watch;
   int code = static_cast<int>(ExitCode::done);
   auto rows = in_parallel<StabilityRow>(
@@ -156,6 +173,8 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   log.result(fmt::format("{} cases on {} {}{}: {} failed, {:.1f} s", rows.size(), o.backend,
                          o.precision, o.reduced ? ", reduced" : "", failed, watch.seconds()));
   if (!o.csv.empty()) write_text_file(o.csv, stability_table(rows, run).csv());
+  write_json(o, stability_table(rows, run), rows.size() == cases.size(), watch.seconds(),
+             {{"failed", failed}});
   if (!o.junit.empty()) write_text_file(o.junit, stability_junit(rows, run, watch.seconds()));
   if (code == 0 && failed > 0) code = static_cast<int>(ExitCode::difference);
   return code;
@@ -175,7 +194,7 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   map.y_key = o.map.substr(comma + 1);
   map.x = map_values(map.scene, run, map.x_key, o.x);
   map.y = map_values(map.scene, run, map.y_key, o.y);
-  check_output("--csv", o.csv);
+  check_outputs("--csv", o.csv, "--json", o.json);
   Log log(o.quiet);
   const std::vector<MapCell> grid = map_cells(map);
   log.note(fmt::format("pbf: {} runs of {}: {} values of {}, {} of {}, {} of solver.iterations",
@@ -191,6 +210,8 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
   const std::string csv = map_table(cells, map).csv();
   o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
+  write_json(o, map_table(cells, map), cells.size() == grid.size(), watch.seconds(),
+             {{"limit", map.limit}});
   log.result(
       fmt::format("{} runs: {} stable, {} degraded (mean compression above {:g} %), {} stopped by "
                   "the guard, {:.0f} s",
@@ -232,6 +253,7 @@ void add_stability(CLI::App& app, int& code) {
       ->transform(whole_number(1, 4096));
   add_scene_options(c, o);
   c->add_option("--csv", o.csv, "Write the table to this file");
+  c->add_option("--json", o.json, "Write the rows to this file, as one JSON object");
   CLI::Option* junit = c->add_option(
       "--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
   add_quiet(c, o.quiet);

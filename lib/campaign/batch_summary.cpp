@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
+#include "lib/base/version.h"
 #include "lib/data/comparison.h"
 #include "lib/io/run_file.h"
 #include "lib/io/table.h"
@@ -144,8 +146,8 @@ std::string exit_reason(int code) {
   return known == kReasons.end() ? "internal error" : known->second;
 }
 
-std::string batch_summary(const std::vector<BatchMember>& members,
-                          const std::map<std::string, JobEnd>& ends, const std::string& out) {
+BatchSummary batch_summary(const std::vector<BatchMember>& members,
+                           const std::map<std::string, JobEnd>& ends, const std::string& out) {
   const std::vector<std::string> keys = set_keys(members);
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
   const std::vector<std::string> names = last_values();
@@ -180,11 +182,25 @@ std::string batch_summary(const std::vector<BatchMember>& members,
     compared.add(results[k], row);
     table.add(row);
   }
-  std::vector<std::string> with_unit;
+  BatchSummary summary{table, {}};
   for (const std::string& c : columns)
     if (const std::string& unit = units[c]; !unit.empty() && unit != "1")
-      with_unit.push_back(c + "=" + unit);
+      summary.units.emplace_back(c, unit);
+  return summary;
+}
+
+std::string BatchSummary::csv() const {
+  std::vector<std::string> with_unit;
+  for (const auto& [column, unit] : units) with_unit.push_back(column + "=" + unit);
   return "# units: " + escaped(joined(with_unit, ", ")) + "\n" + table.csv();
+}
+
+std::string BatchSummary::json() const {
+  Json by_column = Json::object();
+  for (const auto& [column, unit] : units) by_column[column] = unit;
+  return json_text(
+             {{"version", build_info().version}, {"units", by_column}, {"rows", table.json()}}) +
+         "\n";
 }
 
 }  // namespace pbf::campaign_module

@@ -3,10 +3,12 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
+#include "lib/io/table.h"
 
 namespace pbf::campaign_module {
 
@@ -14,14 +16,21 @@ namespace pbf::campaign_module {
 /// it has not started.
 std::string exit_reason(int code);
 
-/// CSV. A comment "# units: column=unit, ..." precedes the table. Columns: name, scene and
+/// As CSV a comment "# units: column=unit, ..." precedes the table. Columns: name, scene and
 /// settings; one column per key that the list or the grid sets, empty if a run uses the value of
 /// its scene ("set.name" if the key has the name of another column); exit code, reason and message;
 /// from the run file, if any, the last row of the log (time, update, compression, energies, ...)
 /// and the numbers of particles, frames and warnings; comparisons with measurements that some run
 /// has ("compare/H2/rms"); `seconds` of all updates with their output,
 /// the only column that depends on the machine.
-std::string batch_summary(const std::vector<BatchMember>& members,
-                          const std::map<std::string, JobEnd>& ends, const std::string& out);
+struct BatchSummary {
+  Table table;
+  std::vector<std::pair<std::string, std::string>> units;  ///< of columns that have one
+  std::string csv() const;
+  /// {"version", "units": {column: unit}, "rows": [{column: value}]}
+  std::string json() const;
+};
+BatchSummary batch_summary(const std::vector<BatchMember>& members,
+                           const std::map<std::string, JobEnd>& ends, const std::string& out);
 
 }  // namespace pbf::campaign_module

@@ -164,7 +164,7 @@ std::vector<DataComparison> read_comparisons(const std::vector<Comparison>& entr
       bad_input(entry + ".data",
                 fmt::format("{}: {} of its {} measured times lie within the run (0 to {:.6g} s); "
                             "at least {} and half of them are needed: give between: [from, to], "
-                            "another time_scale, or a longer run",
+                            "another time_scale or a longer run, or leave it out (compare: [])",
                             c.data, n.common, n.times, end, kFewestPoints));
   }
   return all;

@@ -147,7 +147,7 @@ def test_the_tables_of_bench_have_the_columns_of_the_page(written):
 
 
 def test_every_option_that_writes_a_table_or_report_is_on_the_page(pbf):
-    page = (ROOT / "app/OUTPUTS.md").read_text().partition("\n**Without JSON")[0]
+    page = (ROOT / "app/OUTPUTS.md").read_text().partition("\nNo command writes a trace")[0]
     out = subprocess.run([pbf, "--help"], capture_output=True, text=True).stdout
     commands = re.findall(r"^  (\w+)", re.search(r"Subcommands:\n(.*?)\n\n", out, re.S)[1], re.M)
     found = 0
@@ -159,3 +159,26 @@ def test_every_option_that_writes_a_table_or_report_is_on_the_page(pbf):
             assert row, f"pbf {command} {option}"
             found += 1
     assert found >= 10
+
+
+def test_info_stability_and_batches_have_json(written):
+    page = (ROOT / "app/OUTPUTS.md").read_text()
+    info = json.loads(written("info", "--json"))
+    row = next(line for line in page.splitlines() if "| `pbf info` |" in line)
+    assert list(info) == names(row.partition("JSON: ")[2])
+    lines = {line.split()[0]: line for line in written("info").splitlines()}
+    assert info["commit"] in lines["commit"] and f" {info['threads']}" in lines["threads"]
+    written("stability", "pool_at_rest", "--reduced", "--quiet", "--csv", "case.csv", "--json", "case.json")
+    case = json.loads((written.folder / "case.json").read_text())
+    with open(written.folder / "case.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert case["complete"] and len(case["rows"]) == len(rows) >= 1
+    assert list(case["rows"][0]) == list(rows[0])
+    written("batch", "s.yaml", "--grid", "solver.iterations=1,2", "--out", "sweep", "--quiet")
+    batch = json.loads((written.folder / "sweep/summary.json").read_text())
+    with open(written.folder / "sweep/summary.csv", newline="") as file:
+        head = file.readline()
+        rows = list(csv.DictReader(file))
+    assert list(batch["rows"][0]) == list(rows[0]) and len(batch["rows"]) == 2
+    assert batch["rows"][1]["solver.iterations"] == 2
+    assert head == "# units: " + ", ".join(f"{c}={u}" for c, u in batch["units"].items()) + "\n"
