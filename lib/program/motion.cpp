@@ -34,9 +34,10 @@ Matrix3 turn_about(const Double3& axis, double angle) {
 
 /// amplitude * ramp * sine. At t < 0 a motion with a ramp is at rest; without one it is the sine.
 double swing(const Swing& s, double t) {
-  const double grown = s.ramp <= 0 || t >= s.ramp ? 1
-                       : t <= 0                   ? 0
-                                                  : 0.5 * (1 - std::cos(kPi * t / s.ramp));
+  const double ramp = s.ramp.value_or(0);
+  const double grown = ramp <= 0 || t >= ramp ? 1
+                       : t <= 0               ? 0
+                                              : 0.5 * (1 - std::cos(kPi * t / ramp));
   return s.amplitude * grown * std::sin(2 * kPi * t / s.period + s.phase * kRadians);
 }
 
@@ -81,7 +82,7 @@ Pose pose_of(const Scene& s, const Obstacle& o, double time) {
       if (const double rate = length(m.angular); rate > 0)
         p.turn = turn_about(m.angular, t * rate * kRadians);
       break;
-    case MotionKind::file: {
+    default: {  // has_table(m)
       must_be_read(m.table, m.path);
       for (std::size_t k = 0; k < 3; ++k) p.shift[k] = cubic(m.table, k, t);
       if (m.table.columns < 6) break;

@@ -34,12 +34,13 @@ constexpr int kParts = 32;  // per period or ramp: between samples, a sine diffe
 /// Samples of the ramp. A ramp of very many periods hardly grows within one period, so the last
 /// period of each of its 64 parts is sampled.
 void add_ramp(Times& times, const Swing& s) {
-  const double begin = std::max(0.0, times.first()), end = std::min(s.ramp, times.last());
+  const double ramp = s.ramp.value_or(0), begin = std::max(0.0, times.first()),
+               end = std::min(ramp, times.last());
   if (!(begin < end)) return;
-  const double fine = std::min(s.period, s.ramp) / kParts;
-  const int parts = s.ramp > 64 * s.period ? 64 : 1;
+  const double fine = std::min(s.period, ramp) / kParts;
+  const int parts = ramp > 64 * s.period ? 64 : 1;
   for (int k = 0; k < parts; ++k) {
-    const double high = std::min(end, s.ramp * (k + 1) / parts);
+    const double high = std::min(end, ramp * (k + 1) / parts);
     const double low = std::max(begin, parts > 1 ? high - s.period : 0);
     if (!(low < high)) continue;
     const double first = std::ceil(low / fine);
@@ -50,7 +51,8 @@ void add_ramp(Times& times, const Swing& s) {
 
 /// One period at full amplitude, with samples that include its extremes.
 void add_period(Times& times, const Swing& s) {
-  const double from = s.ramp > 0 ? std::max(times.first(), s.ramp) : times.first();
+  const double ramp = s.ramp.value_or(0);
+  const double from = ramp > 0 ? std::max(times.first(), ramp) : times.first();
   times.add(from);
   const double shift = s.phase / 360;
   const double first = std::ceil((from / s.period + shift) * kParts);
@@ -75,7 +77,7 @@ void add_curve(Times& times, const MotionTable& table, double beside) {
 std::vector<double> telling_times(const Scene& s, const Motion& m, double from, double to) {
   Times times(s.time.motion_begin, from, to);
   if (m.kind == MotionKind::sine) add_ramp(times, m), add_period(times, m);
-  if (m.kind == MotionKind::file) add_curve(times, m.table, 0);
+  if (has_table(m)) add_curve(times, m.table, 0);
   return times.all();
 }
 

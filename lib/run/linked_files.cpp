@@ -44,6 +44,13 @@ std::pair<std::string, std::string> read_from(const auto& f) {
     return {f.table.file, f.table.sha256};
 }
 
+const Place& place_of(const auto& f) {
+  if constexpr (requires { f.origin; })
+    return f.origin;
+  else
+    return f.place;
+}
+
 }  // namespace
 
 void read_linked_files(Scene& scene, const std::string& dir, bool auto_step) {
@@ -52,7 +59,7 @@ void read_linked_files(Scene& scene, const std::string& dir, bool auto_step) {
   for (Obstacle& o : scene.obstacles)
     if (auto* f = o.surface_file()) f->surface.reset();
   for_each_file(scene, [&](auto& m, const std::string& name) {
-    const std::string key = (m.place.text.empty() ? "" : m.place.text + ": ") + name,
+    const std::string key = (place_of(m).text.empty() ? "" : place_of(m).text + ": ") + name,
                       file = (fs::path(dir) / m.path).string();
     using Linked = std::decay_t<decltype(m)>;
     if constexpr (std::is_same_v<Linked, obstacle_keys::Heights>) {

@@ -118,8 +118,9 @@ double largest(Scene s, const AnyMotion& m, F&& f) {
   const bool swings = m.kind == Kind::sine;
   const double begin = s.time.motion_begin;
   double step = s.time.step, end = 0;
-  if (swings) step = std::min(step, m.period / 256), end = std::max(0.0, m.ramp - begin) + m.period;
-  if (swings && m.ramp > 0) step = std::min(step, m.ramp / 256);
+  const double ramp = m.ramp.value_or(0);
+  if (swings) step = std::min(step, m.period / 256), end = std::max(0.0, ramp - begin) + m.period;
+  if (swings && ramp > 0) step = std::min(step, ramp / 256);
   for (std::size_t k = 1; k < m.table.time.size(); ++k)
     step = std::min(step, (m.table.time[k] - m.table.time[k - 1]) / 16);
   if (!m.table.time.empty()) end = std::max(0.0, m.table.time.back() - begin);

@@ -105,7 +105,7 @@ class PeriodicChecker : public SceneRules {
   }
   bool keeps_direction(const Motion& m) const {
     if (!good(m.kind)) return true;
-    if (m.kind == MotionKind::sine) return !m.axis;
+    if (m.kind == MotionKind::sine || makes_waves(m)) return !m.axis;
     return m.kind == MotionKind::velocity && m.angular == Double3{};
   }
   static constexpr double kClear = 1.5;  ///< h

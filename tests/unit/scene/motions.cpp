@@ -170,7 +170,7 @@ TEST_CASE("files of motions and bodies: the place in the scene stands before tha
                  "5 scene.yaml:3:30: bodies[0].path: " + dir + "/none.csv: cannot be opened"));
   // A scene that was made and not read has no place, and equals one that was.
   Scene made = s;
-  made.obstacles[0].motion->place.text.clear();
+  made.obstacles[0].motion->origin.text.clear();
   CHECK(made == s);
   CHECK(contains(error_of([&] { read_linked_files(made, dir); }), "2 obstacles[0].motion.path: "));
 }

@@ -70,7 +70,7 @@ Scene unlike_default() {
   capsule.name = "7";
   capsule.shape = obstacle_keys::Capsule{{{0.1, -1.0 / 3, 0.2}, {-1e6, -1.0 / 3, 0.3}, 0.2}};
   capsule.loads = true;
-  plane.motion = Motion{{}, MotionKind::velocity, {1.0 / 3, 0, -2}, {0, 1e3 / 7, 0}, "", {}, {}};
+  plane.motion = Motion{{}, {}, MotionKind::velocity, {1.0 / 3, 0, -2}, {0, 1e3 / 7, 0}, "", {}, {}};
   box.motion.emplace();
   box.motion->axis = Double3{0, -1.0 / 7, 0};
   box.motion->pivot = Double3{0.1, 0.2, 1.0 / 3};
