@@ -1,0 +1,96 @@
+// What wave makers do, by theory: the motion of the paddle and the waves that it makes. Pure
+// functions. Sources: Biesel 1951 (first order), Madsen 1971 (second order of a piston), Goring
+// 1978 (solitary waves), Hasselmann et al. 1973 (JONSWAP), Tromans et al. 1991 (focused waves).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "lib/scene/scene.h"
+
+namespace pbf::scene_module {
+
+/// 1/m, of linear waves: omega^2 = g k tanh(k depth). omega in 1/s, > 0.
+double wave_number(double omega, double depth, double gravity);
+/// m/s, how fast energy runs.
+double group_speed(double omega, double k, double depth);
+/// Height of the waves over the stroke at still water. kd: k times the depth; hinge: its height
+/// above the floor over the depth, below 1, negative below the floor.
+double piston_ratio(double kd);
+double flap_ratio(double kd, double hinge);
+/// Of the spectrum in arbitrary units, at the frequency f (in 1/period). gamma: 1 for
+/// Pierson-Moskowitz.
+double wave_spectrum(double f, double gamma);
+/// radians, of a line of an irregular sea, and the second number that a line has, in (0, 1].
+struct LineNumbers {
+  double phase, uniform;
+};
+LineNumbers line_numbers(std::uint64_t seed, std::int64_t line);
+
+/// A harmonic: the paddle is at stroke sin(omega t + phase), the water at a distance s from it at
+/// amplitude cos(omega t - k s + phase).
+struct WaveLine {
+  double omega = 0, k = 0, phase = 0;  ///< 1/s, 1/m, radians
+  double stroke = 0, amplitude = 0;    ///< m
+  double group = 0;                    ///< m/s, of the front
+};
+struct SolitaryWave {
+  double height = 0, begin = 0;        ///< m; s, when the paddle begins
+  double kappa = 0, speed = 0;         ///< 1/m, m/s
+  double from = 0;                     ///< m, where the paddle is when it begins
+  double half_stroke = 0, middle = 0;  ///< m; s after `begin`, of the crest at the paddle
+  /// s, after which the paddle stands still, but for a thousandth.
+  double duration() const;
+};
+
+/// A wave maker in its scene. Times are s of the motion's clock.
+struct WaveMaker {
+  bool flap = false;
+  std::size_t axis = 0;                ///< along which waves run, 0 or 1
+  double sign = 1;                     ///< -1: they run against it
+  double front = 0, back = 0;          ///< m, of the box at rest, along the axis times the sign
+  double ahead = 0;                    ///< m, from the front to the end of the tank
+  double depth = 0, hinge = 0;         ///< m, above the floor
+  double gravity = 0;                  ///< m/s^2
+  double height = 0, period = 0;       ///< m, s: of the waves; twice the crest, 2 pi/(kappa c)
+  double k = 0, speed = 0, group = 0;  ///< 1/m, m/s
+  bool second = false;                 ///< theory of second order
+  double shortest = 0;                 ///< s, shortest period
+  double start = 0, ramp = 0, gain = 1;
+  std::vector<WaveLine> lines{};
+  std::vector<SolitaryWave> solitary{};
+
+  double length() const;  ///< m
+  double kd() const { return k * depth; }
+  double ursell() const { return height * length() * length() / (depth * depth * depth); }
+  /// m, the height at which waves break by McCowan and Miche, and whether the first decides.
+  double breaks_at() const;
+  bool by_mccowan() const;
+  /// m, displacement at still water from where it rests, positive towards the waves.
+  double paddle(double time) const;
+  /// The same as rotation of a flap, degrees.
+  double angle(double time) const;
+  /// m above still water at the distance s from the front at rest, as expected with a gain of 1.
+  /// 0 before the front of the waves arrives.
+  double elevation(double s, double time) const;
+};
+
+/// m, to which blocks on the floor are filled ahead of the obstacle; absent: there are none, or
+/// they differ. `given`: to which they would be filled if spacings fitted.
+struct FilledDepth {
+  double level, given;
+};
+std::optional<FilledDepth> filled_depth(const Scene& scene, const Obstacle& obstacle);
+
+/// Of an obstacle that makes waves and has no errors (check_waves.cpp).
+WaveMaker wave_maker(const Scene& scene, const Obstacle& obstacle);
+/// s, of irregular waves: `repeat`, or what it is by default.
+double repeat_of(const Scene& scene, const Motion& motion);
+
+/// Rows of the motion throughout the run and beyond both its ends, 64 in the shortest period. Their
+/// numbers are multiples of 1e-9 s, m or degrees, so that they do not depend on the last bit of
+/// mathematical functions. `most`: of rows; the table is empty if it takes more.
+MotionTable wave_table(const Scene& scene, const Obstacle& obstacle, double most = 4e6);
+
+}  // namespace pbf::scene_module
