@@ -29,6 +29,7 @@ class Checker : public SceneRules {
     if (good(s_.bodies)) check_bodies(domain);
     check_obstacles(p_, problems_);
     check_motions(p_, problems_);
+    check_waves(p_, problems_);
     check_free(p_, problems_);
     check_gauges(p_, problems_);
     check_emitters(p_, problems_);

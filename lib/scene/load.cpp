@@ -79,7 +79,7 @@ void keep_places(PlacedScene& placed) {
       motion->origin.text = placed.place(name + ".motion.path");
     if (auto* file = s.obstacles[k].surface_file()) file->place.text = placed.place(name + ".path");
   }
-  if (s.tank_motion) s.tank_motion->origin.text = placed.place("tank_motion.path");
+  if (s.tank_motion) s.tank_motion->place.text = placed.place("tank_motion.path");
   for (std::size_t k = 0; k < s.emitters.size(); ++k)
     s.emitters[k].place.text = placed.place("emitters[" + std::to_string(k) + "].path");
   for (std::size_t k = 0; k < s.compare.size(); ++k)

@@ -125,6 +125,7 @@ class SceneRules {
 /// Parts of check_scene().
 void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
+void check_waves(const PlacedScene& placed, Problems& problems);
 void check_free(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);
 void check_emitters(const PlacedScene& placed, Problems& problems);

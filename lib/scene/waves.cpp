@@ -72,6 +72,11 @@ double WaveMaker::breaks_at() const {
   return by_mccowan() ? 0.78 * depth : 0.142 * length() * std::tanh(kd());
 }
 
+double WaveMaker::loss(double d) const {
+  if (!solitary.empty()) return 0;
+  return 1 - std::exp(-14.5 * d / length() * (1 + 4 * d / height) / std::pow(kd(), 0.25));
+}
+
 double WaveMaker::paddle(double time) const {
   const double t = time - start;
   double x = 0;

@@ -67,6 +67,11 @@ struct WaveMaker {
   /// m, the height at which waves break by McCowan and Miche, and whether the first decides.
   double breaks_at() const;
   bool by_mccowan() const;
+  /// Share of the height that a wave loses per wavelength at a spacing (m): an estimate, from a fit
+  /// to two-dimensional flumes with levels: on, kD 0.6 to 2, H/d 2 to 12. 0 of solitary waves.
+  double loss(double spacing) const;
+  /// s of the motion's clock, when the first wave is at the distance s (m).
+  double arrival(double s) const { return start + s / group; }
   /// m, displacement at still water from where it rests, positive towards the waves.
   double paddle(double time) const;
   /// The same as rotation of a flap, degrees.
