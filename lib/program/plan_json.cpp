@@ -6,6 +6,7 @@
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/threads.h"
+#include "lib/program/wave_plan.h"
 #include "lib/scene/auto_step.h"
 
 namespace pbf::program_module {
@@ -97,6 +98,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"most_particles", plan.most_particles()},
           {"emitters", emission_json(plan, s)},
           {"free_bodies", bodies_json(s)},
+          {"waves", wave_json(s)},
           {"spacing_m", s.fluid.spacing},
           {"h_m", s.h()},
           {"end_s", totals.end},

@@ -12,6 +12,7 @@
 #include "lib/program/settling.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/threads.h"
+#include "lib/program/wave_plan.h"
 #include "lib/scene/auto_step.h"
 
 namespace pbf::program_module {
@@ -188,7 +189,7 @@ std::string plan_summary(const Plan& plan, const Scene& s, const std::string& ru
 }
 
 std::string plan_details(const Plan& plan, const Scene& s) {
-  std::string out = emission_text(s, plan) + bodies_part(s) + files_part(plan, s) +
+  std::string out = wave_part(s) + emission_text(s, plan) + bodies_part(s) + files_part(plan, s) +
                     memory_part(plan, s) + passes_part(plan, s) + grid_part(plan, s);
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";

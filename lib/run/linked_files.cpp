@@ -9,6 +9,7 @@
 
 #include "lib/run/motion_files.h"
 #include "lib/run/surface_files.h"
+#include "lib/run/wave_files.h"
 #include "lib/scene/validate.h"
 
 namespace pbf::run_module {
@@ -73,6 +74,7 @@ void read_linked_files(Scene& scene, const std::string& dir, bool auto_step) {
     }
     if constexpr (requires { m.surface; } || std::is_same_v<Linked, Emitter>) more_rules = true;
   });
+  make_wave_tables(scene);
   if (more_rules) {
     PlacedScene placed;
     placed.scene = scene;

@@ -9,9 +9,10 @@
 
 namespace pbf::run_module {
 
-/// Reads tables of motions and surfaces of obstacles, each file once. `dir` anchors relative paths.
-/// Throws what read_motion() (motion_files.h) and read_surface() (surface_files.h) throw.
-/// auto_step: time.step was auto and is now chosen from the motions (choose_step_of_motions()).
+/// Reads tables of motions, makes those of waves (wave_files.h), and reads surfaces of obstacles,
+/// each file once. `dir` anchors relative paths. Throws what read_motion() (motion_files.h) and
+/// read_surface() (surface_files.h) throw. auto_step: time.step was auto and is now chosen from the
+/// motions (choose_step_of_motions()).
 void read_linked_files(Scene& scene, const std::string& dir, bool auto_step = false);
 
 /// The paths of these files, as written in the scene.

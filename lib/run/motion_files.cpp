@@ -29,18 +29,22 @@ class Reader {
     MotionTable t;
     const std::vector<CsvRow> rows = all_rows(t.sha256);
     std::string header;
+    std::size_t columns = 0;  // beyond them, expected elevations
     if (!rows.empty())
-      for (const std::string& cell : rows[0].cells) header += (header.empty() ? "" : ",") + cell;
+      for (const std::string& cell : rows[0].cells) {
+        if (columns > 3 && cell.starts_with("eta_")) break;
+        header += (columns++ == 0 ? "" : ",") + cell;
+      }
     if (std::ranges::find(headers, header) == headers.end())
       fail(rows.empty() ? file_ : rows[0].where,
            (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
                joined(headers, " or "));
     t.file = fs::absolute(file_).string();
-    t.columns = int(rows[0].cells.size()) - 1;
+    t.columns = int(columns) - 1;
     for (std::size_t r = 1; r < rows.size(); ++r) {
       std::array<double, 6> values{};
       double time = 0;
-      for (std::size_t c = 0; c < rows[r].cells.size(); ++c)
+      for (std::size_t c = 0; c < columns; ++c)
         number(rows[r], rows[0].cells[c], c, c == 0 ? time : values[c - 1]);
       if (!t.time.empty() && !(time > t.time.back()))
         fail(rows[r].where, "time " + rows[r].cells[0] + " does not follow " +
@@ -97,7 +101,7 @@ class Reader {
   void must_lie_flat(const CsvRow& header, const CsvRow& row,
                      const std::array<double, 6>& values) const {
     for (const char* name : {"y", "ay", "rx", "rz"})
-      for (std::size_t c = 1; c < row.cells.size(); ++c)
+      for (std::size_t c = 1; c < std::min<std::size_t>(row.cells.size(), 7); ++c)
         if (header.cells[c] == name && values[c - 1] != 0)
           fail(row.where,
                std::string(name) + " is " + row.cells[c] + ", with dimensions: 2 it must be 0");

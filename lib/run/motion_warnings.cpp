@@ -37,9 +37,9 @@ int top_of(const Scene& s) {
 /// Whether an obstacle that only rotates has its pivot at the wall.
 bool is_hinged(const Scene& s, const Obstacle& o, int face) {
   const Motion& m = *o.motion;
-  const bool turns = m.kind == MotionKind::sine       ? m.axis.has_value()
-                     : m.kind == MotionKind::velocity ? length(m.velocity) == 0
-                                                      : false;
+  const bool turns = m.kind == MotionKind::sine || makes_waves(m) ? m.axis.has_value()
+                     : m.kind == MotionKind::velocity             ? length(m.velocity) == 0
+                                                                  : false;
   if (!turns) return false;
   const auto axis = std::size_t(face / 2);
   const double at = m.pivot.value_or(o.middle())[axis];
@@ -103,6 +103,8 @@ std::string motion_remedy(const Obstacle& o, bool leaves) {
                  : "end the run earlier, or give a table that stops it (motion: {kind: file})";
     case MotionKind::file:
       break;
+    default:
+      return "lower the waves, or make the obstacle longer";
   }
   return "change the rows of its table";
 }

@@ -26,7 +26,7 @@ Scene scene_of(const Scene& s, const Obstacle& o) {
 std::vector<double> times_of(const Scene& s, const Motion& m) {
   std::vector<double> times = telling_times(s, m, 0, s.time.end);
   const double begin = s.time.motion_begin;
-  if (m.kind != MotionKind::file || m.table.time.size() < 2) return times;
+  if (!has_table(m) || m.table.time.size() < 2) return times;
   const std::size_t last = piece_at(m.table, begin + s.time.end);
   for (std::size_t k = piece_at(m.table, begin); k <= last; ++k)
     for (int c = 0; c < m.table.columns; ++c)

@@ -8,6 +8,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/output_file.h"
+#include "lib/base/sha256.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/io/particle_file.h"
@@ -18,6 +19,7 @@
 #include "lib/run/prestabilize.h"
 #include "lib/run/run_record.h"
 #include "lib/run/settle.h"
+#include "lib/run/wave_files.h"
 
 namespace pbf::run_module {
 namespace {
@@ -127,6 +129,10 @@ RunResult simulate(RunParts& run) {
   run.json = json.get();
   if (from.started) prepare_resume(run.folder, from);
   run.folder.write_text(kResolvedScene, scene_record(run.scene, run.start.loaded.files));
+  for (const WaveFile& f : wave_files(run.scene)) {
+    run.folder.write_text(f.name, f.text);
+    if (!from.saved) note("SHA-256 of " + f.name + ": " + sha256(f.text));
+  }
   log.note(banner(run));
   for (const Warning& w : run.start.warnings) log.warning(w.text);
   for (const std::string& text : from.notes) note(text);

@@ -22,6 +22,7 @@
 #include "lib/base/own_file.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
+#include "lib/run/wave_files.h"
 
 namespace pbf::run_module {
 namespace fs = std::filesystem;
@@ -33,7 +34,7 @@ namespace {
 }
 
 bool own_picture(const std::string& name) {
-  return name.starts_with(kTemporaryPrefix) ||
+  return name.starts_with(kTemporaryPrefix) || is_wave_file(name) ||
          (name.starts_with("frame_") && fs::path(name).extension() == ".png");
 }
 

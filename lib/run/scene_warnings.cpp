@@ -13,6 +13,7 @@
 #include "lib/run/start_neighbors.h"
 #include "lib/run/surface_warnings.h"
 #include "lib/run/warnings.h"
+#include "lib/run/wave_files.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/body_box.h"
 #include "lib/scene/periodic.h"
@@ -264,6 +265,7 @@ std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t part
                             {"seam", seam_text(scene)},
                             {"relaxation", sor_text(scene)},
                             {"output", output_text(scene)}};
+  for (Warning& w : wave_warnings(scene)) list.push_back(std::move(w));
   std::erase_if(list, [](const Warning& w) { return w.text.empty(); });
   return list;
 }

@@ -10,7 +10,8 @@
 namespace pbf::run_module {
 
 /// `kind`: units, step, speed, motion, table, obstacles, thin, wall, collision, overlap,
-/// over-dense, seam, relaxation, output (of a scene); compressed, energy, stirred, passed_through,
+/// over-dense, seam, relaxation, output, wave_breaks and others of
+/// wave_warnings() (of a scene); compressed, energy, stirred, passed_through,
 /// closed_in, left, compare NAME (of a run). A list has at most one warning of each kind.
 struct Warning {
   std::string kind, text;

@@ -53,9 +53,8 @@ void add_regular(WaveMaker& w, const Motion& m) {
   const double kd = w.lines[0].k * w.depth, coth = 1 / std::tanh(kd),
                over = coth * coth - 1;  // 1/sinh^2
   const double bound = w.lines[0].k * m.height * m.height / 16 * coth * (2 + 3 * over);
-  const double stroke =
-      m.height * m.height / (32 * w.depth) * (3 * coth * over - 2 / piston_ratio(kd));
-  w.lines.push_back({2 * w.lines[0].omega, 2 * w.lines[0].k, 0, stroke, bound, w.lines[0].group});
+  w.lines.push_back({2 * w.lines[0].omega, 2 * w.lines[0].k, 0,
+                     second_stroke(m.height, w.depth, kd), bound, w.lines[0].group});
 }
 
 void add_irregular(WaveMaker& w, const Scene& s, const Motion& m) {

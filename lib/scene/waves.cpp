@@ -60,6 +60,11 @@ double flap_ratio(double kd, double hinge) {
   return piston_ratio(kd) * (1 + end / (kd * (1 - hinge)));
 }
 
+double second_stroke(double height, double depth, double kd) {
+  const double coth = 1 / std::tanh(kd);
+  return height * height / (32 * depth) * (3 * coth * inverse_sinh2(kd) - 2 / piston_ratio(kd));
+}
+
 double SolitaryWave::duration() const { return 2 * middle + 2 * half_stroke / speed; }
 
 double WaveMaker::length() const { return 2 * kPi / k; }
@@ -75,6 +80,12 @@ double WaveMaker::breaks_at() const {
 double WaveMaker::loss(double d) const {
   if (!solitary.empty()) return 0;
   return 1 - std::exp(-14.5 * d / length() * (1 + 4 * d / height) / std::pow(kd(), 0.25));
+}
+
+double WaveMaker::free_share() const {
+  if (lines.empty() || lines.size() > 2 || flap || solitary.size() > 0) return 0;
+  const double free = wave_number(2 * lines[0].omega, depth, gravity) * depth;
+  return std::fabs(piston_ratio(free) * second_stroke(height, depth, kd())) / (height / 2);
 }
 
 double WaveMaker::paddle(double time) const {

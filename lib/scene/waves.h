@@ -19,6 +19,8 @@ double group_speed(double omega, double k, double depth);
 /// above the floor over the depth, below 1, negative below the floor.
 double piston_ratio(double kd);
 double flap_ratio(double kd, double hinge);
+/// m, amplitude of the second harmonic of a piston (Madsen).
+double second_stroke(double height, double depth, double kd);
 /// Of the spectrum in arbitrary units, at the frequency f (in 1/period). gamma: 1 for
 /// Pierson-Moskowitz.
 double wave_spectrum(double f, double gamma);
@@ -70,6 +72,9 @@ struct WaveMaker {
   /// Share of the height that a wave loses per wavelength at a spacing (m): an estimate, from a fit
   /// to two-dimensional flumes with levels: on, kD 0.6 to 2, H/d 2 to 12. 0 of solitary waves.
   double loss(double spacing) const;
+  /// Of regular waves of a piston: the free wave of half the period that a motion of first order
+  /// makes, as a share of the first harmonic. 0 of others.
+  double free_share() const;
   /// s of the motion's clock, when the first wave is at the distance s (m).
   double arrival(double s) const { return start + s / group; }
   /// m, displacement at still water from where it rests, positive towards the waves.
