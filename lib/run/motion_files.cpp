@@ -29,12 +29,9 @@ class Reader {
     MotionTable t;
     const std::vector<CsvRow> rows = all_rows(t.sha256);
     std::string header;
-    std::size_t columns = 0;  // beyond them, expected elevations
-    if (!rows.empty())
-      for (const std::string& cell : rows[0].cells) {
-        if (columns > 3 && cell.starts_with("eta_")) break;
-        header += (columns++ == 0 ? "" : ",") + cell;
-      }
+    std::size_t columns = rows.empty() ? 0 : rows[0].cells.size();
+    while (columns > 4 && rows[0].cells[columns - 1].starts_with("eta_")) --columns;
+    for (std::size_t c = 0; c < columns; ++c) header += (c == 0 ? "" : ",") + rows[0].cells[c];
     if (std::ranges::find(headers, header) == headers.end())
       fail(rows.empty() ? file_ : rows[0].where,
            (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
