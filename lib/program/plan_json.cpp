@@ -3,6 +3,7 @@
 
 #include "lib/base/json.h"
 #include "lib/program/body_mass.h"
+#include "lib/program/numbers.h"
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/threads.h"
@@ -80,7 +81,8 @@ Json bodies_json(const Scene& scene) {
 }  // namespace
 
 Json plan_json(const Plan& plan, const Scene& s) {
-  Json axes = Json::array(), passes = Json::array(), files = Json::array(), left = Json::array();
+  Json axes = Json::array(), passes = Json::array(), files = Json::array(), left = Json::array(),
+       numbers = Json::array();
   for (const int axis : plan.axes.of) axes.push_back(std::string(1, char('x' + axis)));
   for (const PassCount& c : count_passes(plan.program))
     passes.push_back({{"name", c.pass->name},
@@ -92,6 +94,8 @@ Json plan_json(const Plan& plan, const Scene& s) {
   for (const PlanFile& f : plan.files)
     files.push_back({{"name", f.name}, {"number", f.number}, {"bytes", f.bytes}});
   for (const LeftOut& l : plan.left_out) left.push_back({{"what", l.what}, {"because", l.because}});
+  for (const SceneNumber& n : scene_numbers(s))
+    numbers.push_back({{"name", n.name}, {"value", n.value}, {"formula", n.formula}});
   const PlanTotals totals = plan_totals(plan, s);
   return {{"scene", s.name},
           {"particles", plan.particles},
@@ -99,6 +103,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"emitters", emission_json(plan, s)},
           {"free_bodies", bodies_json(s)},
           {"waves", wave_json(s)},
+          {"numbers", numbers},
           {"spacing_m", s.fluid.spacing},
           {"h_m", s.h()},
           {"end_s", totals.end},

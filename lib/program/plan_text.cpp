@@ -6,6 +6,7 @@
 #include "lib/program/axes.h"
 #include "lib/program/body_mass.h"
 #include "lib/program/free_bodies.h"
+#include "lib/program/numbers.h"
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
@@ -189,8 +190,9 @@ std::string plan_summary(const Plan& plan, const Scene& s, const std::string& ru
 }
 
 std::string plan_details(const Plan& plan, const Scene& s) {
-  std::string out = wave_part(s) + emission_text(s, plan) + bodies_part(s) + files_part(plan, s) +
-                    memory_part(plan, s) + passes_part(plan, s) + grid_part(plan, s);
+  std::string out = wave_part(s) + numbers_part(s) + emission_text(s, plan) + bodies_part(s) +
+                    files_part(plan, s) + memory_part(plan, s) + passes_part(plan, s) +
+                    grid_part(plan, s);
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;

@@ -34,7 +34,7 @@ double stroke_of(const Scene& s, const WaveMaker& w) {
 }
 
 std::string waves_of(const Scene& s, const Obstacle& o) {
-  const Motion& m = *o.motion;
+  const auto& m = *o.motion;
   const WaveMaker w = wave_maker(s, o);
   const double d = s.fluid.spacing;
   const char* size = m.kind == MotionKind::irregular_waves ? "Hs" : "H";

@@ -99,12 +99,12 @@ std::vector<WaveFile> wave_files(const Scene& s) {
       std::string name = g.name;
       std::ranges::replace_if(
           name, [](char c) { return c == ',' || c == '\n'; }, '_');
-      text += ",eta_" + name + "_m";
+      text.append(",eta_").append(name).append("_m");
     }
     for (std::size_t k = 0; k < table.time.size(); ++k) {
-      text += "\n" + to_text(table.time[k]);
+      text.append("\n").append(to_text(table.time[k]));
       for (int c = 0; c < table.columns; ++c)
-        text += "," + to_text(table.values[k][std::size_t(c)]);
+        text.append(",").append(to_text(table.values[k][std::size_t(c)]));
       for (const double distance : distances)
         text += fmt::format(",{:.9f}", w.elevation(distance, table.time[k]));
     }

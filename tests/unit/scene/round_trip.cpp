@@ -6,6 +6,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
 #include "tests/support/catch.h"
+#include "tests/support/flume.h"
 #include "tests/support/scene_samples.h"
 
 namespace pbf::scene_test {
@@ -70,7 +71,8 @@ Scene unlike_default() {
   capsule.name = "7";
   capsule.shape = obstacle_keys::Capsule{{{0.1, -1.0 / 3, 0.2}, {-1e6, -1.0 / 3, 0.3}, 0.2}};
   capsule.loads = true;
-  plane.motion = Motion{{}, {}, MotionKind::velocity, {1.0 / 3, 0, -2}, {0, 1e3 / 7, 0}, "", {}, {}};
+  plane.motion =
+      Motion{{}, {}, MotionKind::velocity, {1.0 / 3, 0, -2}, {0, 1e3 / 7, 0}, "", {}, {}};
   box.motion.emplace();
   box.motion->axis = Double3{0, -1.0 / 7, 0};
   box.motion->pivot = Double3{0.1, 0.2, 1.0 / 3};
@@ -180,7 +182,22 @@ TEST_CASE("resolved scene: reads back to an equal scene, bit for bit") {
   files.obstacles.resize(2);
   files.obstacles[0].name = "hull", files.obstacles[0].shape = mesh;
   files.obstacles[1].name = "bed", files.obstacles[1].shape = bed;
-  for (const Scene& s : {plain, other, all, periodic, files}) {
+  Scene sea =
+      parse(flume_text("kind: irregular_waves, direction: [1, 0, 0], height: 0.06, period: 2"));
+  Motion& m = *sea.obstacles[0].motion;
+  m.height = 0.2 / 3, m.depth = 0.9 / 3.0000001, m.gain = 1.0 / 3, m.start = 1e-7;
+  m.spectrum = WaveSpectrum::pierson_moskowitz, m.gamma = 10.0 / 3;
+  m.band = std::array{0.2 / 3, 10.0 / 3}, m.seed = 9223372036854775807u, m.repeat = 1e3 / 7;
+  m.amplitudes = WaveAmplitudes::random, m.ramp = 0;
+  Scene group = parse(flume_text(
+      "kind: focused_waves, direction: [1, 0, 0], crest: 0.06, period: 2, place: 6, time: 12"));
+  Motion& f = *group.obstacles[0].motion;
+  f.crest = 0.2 / 3, f.place = 20.0 / 3, f.time = 1e2 / 7, f.components = 7, f.phase = -1.0 / 3;
+  Scene crests = parse(flume_text("kind: solitary_waves, direction: [1, 0, 0], heights: [0.06]"));
+  Motion& c = *crests.obstacles[0].motion;
+  c.heights = {0.2 / 3, 0.1 / 3}, c.times = {1.0 / 3, 1e2 / 7}, c.breaking = true;
+  c.theory = SolitaryTheory::boussinesq;
+  for (const Scene& s : {plain, other, all, periodic, files, sea, group, crests}) {
     const std::string text = resolved_yaml(s);
     CAPTURE(text);
     CHECK(parse(text) == s);
