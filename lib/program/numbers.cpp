@@ -15,16 +15,15 @@ namespace pbf::program_module {
 namespace {
 
 constexpr double kTension = 0.072;  // N/m, of water
-constexpr double kPi = 3.14159265358979323846;
 
-struct Sizes {
+struct FlowSizes {
   double depth = 0, tank = 0;  ///< m
   double width = 0;            ///< m, least extent of an obstacle; 0: none
   double speed = 0;            ///< m/s
 };
 
-Sizes sizes_of(const Scene& s) {
-  Sizes z;
+FlowSizes sizes_of(const Scene& s) {
+  FlowSizes z;
   const auto down = std::size_t(level_axis(s));
   double area = 1, held = 0;
   for (const int a : axes_across_level(s)) {
@@ -53,7 +52,8 @@ Sizes sizes_of(const Scene& s) {
     if (!o.motion || !makes_waves(*o.motion)) continue;
     const WaveMaker w = wave_maker(s, o);
     z.depth = w.depth;
-    z.speed = std::max(z.speed, w.solitary.empty() ? kPi * w.height / w.period / std::tanh(w.kd())
+    z.speed = std::max(z.speed, w.solitary.empty() ? 3.14159265358979323846 * w.height / w.period /
+                                                         std::tanh(w.kd())
                                                    : w.speed * w.height / (w.depth + w.height));
   }
   return z;
@@ -62,7 +62,7 @@ Sizes sizes_of(const Scene& s) {
 }  // namespace
 
 std::vector<SceneNumber> scene_numbers(const Scene& s) {
-  const Sizes z = sizes_of(s);
+  const FlowSizes z = sizes_of(s);
   const double d = s.fluid.spacing, h = s.h(), g = length(s.gravity), rho = s.fluid.rest_density,
                dt = s.time.step / s.solver.substeps;
   std::vector<SceneNumber> all;

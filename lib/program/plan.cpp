@@ -18,6 +18,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/program/time_order.h"
 #include "lib/scene/load.h"
+#include "lib/scene/waves.h"
 
 namespace pbf::program_module {
 namespace {
@@ -195,13 +196,17 @@ double mean_particles(const Plan& plan, const Scene& s) {
 
 void plan_files(Plan& plan, const Scene& s) {
   const auto n = double(plan.most_particles()), mean = mean_particles(plan, s);
-  const auto add = [&](const char* name, double number, double bytes,
+  const auto add = [&](const std::string& name, double number, double bytes,
                        const std::string& note = {}) {
     plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
   };
   add("scene.resolved.yaml", 1, double(resolved_yaml(s).size()));
   add("log.txt", 1, 2500);
   add("DONE", 1, 30);
+  for (const Obstacle& o : s.obstacles)
+    if (o.motion && makes_waves(*o.motion))
+      add(wave_file_name(o.name), 1,
+          double(o.motion->table.time.size()) * (26 + 13 * double(s.gauges.size())));
   const Schedule schedule = make_schedule(s);
   const std::int64_t all = schedule.updates;
   if (s.output) {

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kMostTurn = 30;  // degrees
 constexpr double kMostRows = 4e6;
-constexpr const char* kWaveFile = "waves_";
 
 /// The row of the table that is farthest towards the waves or, with `turn`, of the largest angle.
 std::size_t farthest_row(const MotionTable& table, std::size_t column, double sign, bool turn) {
@@ -77,7 +76,7 @@ void make_wave_tables(Scene& s) {
 }
 
 bool is_wave_file(const std::string& name) {
-  return name.starts_with(kWaveFile) && name.ends_with(".csv");
+  return name.starts_with("waves_") && name.ends_with(".csv");
 }
 
 std::vector<WaveFile> wave_files(const Scene& s) {
@@ -108,7 +107,7 @@ std::vector<WaveFile> wave_files(const Scene& s) {
       for (const double distance : distances)
         text += fmt::format(",{:.9f}", w.elevation(distance, table.time[k]));
     }
-    files.push_back({kWaveFile + o.name + ".csv", text + "\n"});
+    files.push_back({wave_file_name(o.name), text + "\n"});
   }
   return files;
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lib/scene/scene.h"
@@ -95,6 +96,10 @@ std::optional<FilledDepth> filled_depth(const Scene& scene, const Obstacle& obst
 
 /// Of an obstacle that makes waves and has no errors (check_waves.cpp).
 WaveMaker wave_maker(const Scene& scene, const Obstacle& obstacle);
+/// Of the file that a run keeps of the wave maker.
+inline std::string wave_file_name(const std::string& obstacle) {
+  return "waves_" + obstacle + ".csv";
+}
 /// s, of irregular waves: `repeat`, or what it is by default.
 double repeat_of(const Scene& scene, const Motion& motion);
 

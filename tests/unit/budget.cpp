@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
     {"app", 2430},        {"kernels", 7720},  {"lib/base", 1850},  {"lib/campaign", 3960},
-    {"lib/data", 1190},   {"lib/exec", 6900}, {"lib/io", 4240},    {"lib/program", 9140},
-    {"lib/render", 3950}, {"lib/run", 6170},  {"lib/scene", 9530}, {"lib/solver", 3070},
+    {"lib/data", 1190},   {"lib/exec", 6900}, {"lib/io", 4240},    {"lib/program", 9430},
+    {"lib/render", 3950}, {"lib/run", 6480},  {"lib/scene", 10400}, {"lib/solver", 3070},
     {"lib/verify", 2160},
 };
 constexpr int kLongestFile = 300;
