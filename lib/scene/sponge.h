@@ -22,10 +22,13 @@ inline bool damps(const Sponge& sponge, int axis) {
          sponge.axes.end();
 }
 
-/// s, of the first obstacle whose motion has one.
+/// s, of the first obstacle whose motion has one: that of an oscillation, or of the waves that it
+/// makes.
 inline std::optional<double> wave_period(const Scene& s) {
   for (const Obstacle& o : s.obstacles)
-    if (o.motion && o.motion->kind == MotionKind::sine) return o.motion->period;
+    if (o.motion && (o.motion->kind == MotionKind::sine || makes_waves(*o.motion)) &&
+        o.motion->kind != MotionKind::solitary_waves)
+      return o.motion->period;
   return std::nullopt;
 }
 
