@@ -175,6 +175,33 @@ TEST_CASE("the distance of a map has the sign of the side, and is exact to a ten
   CHECK(map.share<Smoothing::consistent, false>({2, 2, 9}, 1 / kRange).share == 0);
 }
 
+TEST_CASE(
+    "far from all parts of a mesh its distance is no larger than the true one, on all sides") {
+  TriangleMesh m = box_mesh({0, 0, 0}, {1, 1, 1});
+  const TriangleMesh other = box_mesh({14, 11, 9}, {15, 12, 10});
+  for (const auto& t : other.triangle) m.triangle.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  m.vertex.insert(m.vertex.end(), other.vertex.begin(), other.vertex.end());
+  const MeshMap made = make_mesh_map(m, {.range = kRange, .reach = 1.2});
+  const shape::Mesh<double> map = made.at();
+  const auto to_box = [](const Double3& x, const Double3& low) {
+    double squares = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      squares += std::pow(std::max({low[a] - x[a], x[a] - low[a] - 1, 0.0}), 2);
+    return std::sqrt(squares);
+  };
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> some(0, 1);
+  for (int k = 0; k < 2000; ++k) {
+    const Double3 x{15 * some(random), 12 * some(random), 10 * some(random)};
+    const double truth = std::min(to_box(x, {0, 0, 0}), to_box(x, {14, 11, 9}));
+    if (truth < 1) continue;
+    CAPTURE(x[0], x[1], x[2]);
+    const double found = map.distance<3>({x[0], x[1], x[2]});
+    CHECK(found > 0);
+    CHECK(found <= truth + 0.025);
+  }
+}
+
 namespace {
 
 /// A bottle without a neck: walls and floor of a thickness around a hollow of 2 x 2 x 2.
