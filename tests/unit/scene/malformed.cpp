@@ -288,6 +288,8 @@ TEST_CASE("scene: no mutilated scene does anything but parse or raise a bad-inpu
 TEST_CASE("scene: every key of the table can be misspelt and is found again") {
   for (const Key& key : scene_table().keys) {
     if (key.leaf().size() < 5) continue;
+    // A plural beside its singular: the misspelt word is nearer to that.
+    if (scene_table().find_key(key.path.substr(0, key.path.size() - 1))) continue;
     std::string wrong = key.path;
     std::swap(wrong[wrong.size() - 1], wrong[wrong.size() - 2]);
     CAPTURE(wrong);

@@ -73,9 +73,10 @@ TEST_CASE("motions: what is missing, misplaced or contradicts is named with its 
   CHECK(contains(motion_error("{amplitude: 2}"), "obstacles[0].motion.kind: missing; required"));
   CHECK(contains(motion_error("on"), "obstacles[0].motion.kind: missing; required"));
   CHECK(contains(motion_error("{kind: sin}"), "obstacles[0].motion.kind: "));
-  CHECK(contains(motion_error("{kind: velocity, velocity: [1, 0, 0], period: 2}"),
-                 "obstacles[0].motion.period: belongs to kind sine, this motion is a velocity; "
-                 "remove it or change the kind"));
+  CHECK(
+      contains(motion_error("{kind: velocity, velocity: [1, 0, 0], period: 2}"),
+               "obstacles[0].motion.period: belongs to kind sine, regular_waves, irregular_waves, "
+               "focused_waves, this motion is a velocity; remove it or change the kind"));
   CHECK(contains(motion_error("{kind: velocity, velocty: [1, 0, 0]}"),
                  "obstacles[0].motion.velocty: unknown key, did you mean "
                  "obstacles[0].motion.velocity?"));

@@ -57,7 +57,7 @@ TEST_CASE("suggestions: what other programs call a key") {
       {"solver.sovler", ""},  // what is around it is not meant
       {"solver.solver", ""},
       {"solver.solve", ""},
-      {"time.tme", ""},
+      {"time.tme", "obstacles[].motion.time"},
       {"domain.box", ""},
       {"fluid.fluids", ""},
       {"bodies[].bodies", ""},
