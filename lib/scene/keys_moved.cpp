@@ -49,7 +49,7 @@ std::vector<Key> wave_keys() {
           of(kIrregular)),
       key(OBSTACLE(motion->repeat), number("s", kSeconds),
           "Time after which the waves repeat: lines are 1/repeat apart. auto: the run from start "
-          "on, rounded up to whole seconds.",
+          "on, rounded up to whole seconds, at least 4 periods.",
           automatic, of(kIrregular)),
       key(OBSTACLE(motion->amplitudes), one_of({"spectrum", "random"}),
           "Amplitudes of the lines. spectrum: exactly those of the spectrum. random: both parts "
