@@ -36,8 +36,8 @@ struct SpongeZone {
   }
 };
 
-/// Between updates. In second order the velocity without the last push decays alike, so that the
-/// push does.
+/// Between updates. In second order the last push stays as it is: it is what holds the fluid
+/// against gravity, and no motion.
 template <class Real>
 struct SpongePass {
   SpongeZone<Real> zone[kMostSponges];
@@ -55,7 +55,7 @@ struct SpongePass {
       if (f == Real(1)) continue;
       const Vec3<Real> before = xyz(velocity[i]), after = damp(before, zone[k].damped, f);
       velocity[i] = with_w(after, Real(0));
-      if (free) free[i] = with_w(damp(xyz(free[i]), zone[k].damped, f), Real(0));
+      if (free) free[i] = with_w(xyz(free[i]) + (after - before), Real(0));
       book.add(i, 0.5 * (double(dot(before, before)) - double(dot(after, after))));
     }
   }

@@ -36,9 +36,10 @@ class TableReader {
     for (std::size_t r = 1; r < rows_.size(); ++r) {
       const double time = second * number(r, t);
       if (std::isnan(time)) fail(rows_[r].where, "has no time in column " + head(t));
-      if (!out.time.empty() && !(time > out.time.back()))
-        fail(rows_[r].where,
-             "time " + cell(r, t) + " does not follow " + cell(r - 1, t) + "; times must grow");
+      // Digitised curves have steps: several values at one time.
+      if (!out.time.empty() && !(time >= out.time.back()))
+        fail(rows_[r].where, "time " + cell(r, t) + " does not follow " + cell(r - 1, t) +
+                                 "; times must not decrease");
       out.time.push_back(time);
       out.value.push_back(factor * number(r, x) + c_.offset);
     }

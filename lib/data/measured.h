@@ -12,7 +12,7 @@ namespace pbf::data_module {
 
 /// A measured series in the unit of the reading that it is compared with.
 struct Measured {
-  std::vector<double> time, value;  ///< s, increasing; NaN: not measured
+  std::vector<double> time, value;  ///< s, not decreasing; NaN: not measured
   bool means = false;               ///< TimeSeries::means
   std::string file, column;         ///< where it comes from
   std::string sha256;               ///< of the bytes of the table; empty for a run

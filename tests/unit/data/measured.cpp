@@ -103,8 +103,8 @@ TEST_CASE("each mistake in a table is one sentence with file, column and remedy"
   CHECK(has(refused("t,H3_m\n0,1\n1,2\n"), "no column is named as the reading, H2; give column"));
   CHECK(has(refused("t,H2_m,H2_mm\n0,1,2\n1,2,3\n"), "H2_m and H2_mm are both named"));
   CHECK(has(refused("t,H2_m\n", {}), "holds no rows of numbers"));
-  CHECK(
-      has(refused("t,H2_m\n0,1\n0,2\n"), "data.csv:3: time 0 does not follow 0; times must grow"));
+  CHECK(has(refused("t,H2_m\n1,1\n0,2\n"),
+            "data.csv:3: time 0 does not follow 1; times must not decrease"));
   CHECK(has(refused("t,H2_m\n0,1\n1,two\n"), "data.csv:3: H2_m: \"two\" is not a number"));
   CHECK(has(refused("t,H2_m\n0,\n1,nan\n"), "column H2_m holds no number"));
   CHECK(has(refused("t;H2_m\n0;1\n1;2\n"), "commas part the columns"));
