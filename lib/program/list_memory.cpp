@@ -25,6 +25,9 @@ double deviations_of_longest(const Scene& s) {
   return of[lane_bits(chosen_simd(), std::size_t(size_of(word(s.precision))))];
 }
 
+/// Entries of the list of a particle with so many within h: it is not in its own list.
+int in_list(int count) { return std::max(0, count - 1); }
+
 /// Entries of one list, including padding to the longest of its group: mean and maximum. 0 if the
 /// start was not counted.
 struct StartEntries {
@@ -37,7 +40,7 @@ StartEntries start_entries(const Scene& s, const Plan& plan) {
   for (std::size_t i = 0; i < plan.start.count.size(); ++i) {
     // At random positions the counts scatter at least like a Poisson distribution. Otherwise they
     // differ by up to a fifth between the surface and the inside of a body.
-    const double m = plan.start.count[i], poisson = deviations * std::sqrt(m);
+    const double m = in_list(plan.start.count[i]), poisson = deviations * std::sqrt(m);
     const double entries = m + std::max(random ? poisson : std::min(poisson, 0.2 * m),
                                         deviations * plan.start.scatter[i]);
     e.mean += entries / n;
@@ -58,10 +61,10 @@ ListCapacity list_capacity(const Scene& s, const Plan& plan) {
   ListCapacity capacity = first_list_capacity(rest_neighbors(s), n);
   const std::vector<int>& sample = plan.start.count;
   if (sample.empty()) return capacity;
-  const int longest = *std::max_element(sample.begin(), sample.end());
+  const int longest = in_list(*std::max_element(sample.begin(), sample.end()));
   for (;;) {
     const auto more = std::count_if(sample.begin(), sample.end(),
-                                    [&](int entries) { return entries > 4 * capacity.first; });
+                                    [&](int count) { return in_list(count) > 4 * capacity.first; });
     const auto overflows =
         std::int64_t(double(more) * double(at_start(plan)) / double(sample.size()));
     if (overflows <= capacity.overflows && longest <= capacity.longest()) return capacity;
