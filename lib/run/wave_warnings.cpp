@@ -94,18 +94,18 @@ std::string settings_text(const Scene& s) {
 }
 
 /// Whether something other than a wall may end the waves.
-bool has_slope(const Scene& s) {
-  return std::ranges::any_of(s.obstacles, [](const Obstacle& o) {
+bool has_end(const Scene& s) {
+  return !s.damping.empty() || std::ranges::any_of(s.obstacles, [](const Obstacle& o) {
     return !o.motion && (std::holds_alternative<obstacle_keys::Plane>(o.shape) || o.surface_file());
   });
 }
 
 std::string returns_text(const Scene& s, const WaveMaker& w) {
   const double back = w.arrival(2 * w.ahead) - s.time.motion_begin;
-  if (back >= s.time.end || !s.domain.has_wall(int(w.axis), w.sign > 0) || has_slope(s)) return "";
+  if (back >= s.time.end || !s.domain.has_wall(int(w.axis), w.sign > 0) || has_end(s)) return "";
   return fmt::format(
       "the first wave is back at the paddle at {:.3g} s, and time.end is {:g} s; give "
-      "a slope at the far end, a longer tank, or an earlier end",
+      "a slope or a sponge (damping) at the far end, a longer tank, or an earlier end",
       back, s.time.end);
 }
 

@@ -82,7 +82,7 @@ TEST_CASE("wave_returns: the time at which waves are back is told unless somethi
   const std::vector<std::string> longer{"time.end=12"};
   CHECK(contains(told("wave_returns", kRegular, longer),
                  "the first wave is back at the paddle at 10.6 s, and time.end is 12 s; give a "
-                 "slope at the far end"));
+                 "a sponge (damping) at the far end"));
   CHECK(told("wave_returns", kRegular, {"time.end=12", "domain.open=[x_max]"}).empty());
 }
 
