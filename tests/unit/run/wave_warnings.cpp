@@ -82,8 +82,10 @@ TEST_CASE("wave_returns: the time at which waves are back is told unless somethi
   const std::vector<std::string> longer{"time.end=12"};
   CHECK(contains(told("wave_returns", kRegular, longer),
                  "the first wave is back at the paddle at 10.6 s, and time.end is 12 s; give a "
-                 "a sponge (damping) at the far end"));
+                 "slope or a sponge (damping) at the far end"));
   CHECK(told("wave_returns", kRegular, {"time.end=12", "domain.open=[x_max]"}).empty());
+  const std::string zone = "damping=[{name: end, min: [6, 0, 0], max: [8, 1, 1]}]";
+  CHECK(told("wave_returns", kRegular, {"time.end=12", zone}).empty());
 }
 
 TEST_CASE("waves_NAME.csv: as a table of a file it is the same motion, and has the gauges' waves") {
