@@ -1,5 +1,6 @@
 // pbf compare-data: readings of a finished run beside measurements.
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/commands.h"
 #include "app/options.h"
@@ -82,6 +83,13 @@ std::vector<Comparison> entries(const CompareDataOptions& o) {
                 "--data " + o.data +
                     ": which reading? Give --gauge NAME, --load NAME/x or --log "
                     "COLUMN, each with =COLUMN of the data where it is named otherwise");
+  std::set<std::string> names;
+  for (const Comparison& c : all)
+    if (!names.insert(name_of(c)).second)
+      throw Error(ExitCode::bad_input,
+                  c.place.text + ": " + name_of(c) + " is compared twice; give each a command");
+  if ((shared.time_scale && !(*shared.time_scale > 0)) || !(shared.average >= 0))
+    throw Error(ExitCode::bad_input, "--time-scale must be above 0, --average must not be below 0");
   for (const Comparison& c : all)
     if (const auto problem = problem_of(c, all))
       throw Error(ExitCode::bad_input, c.place.text + ": " + problem->key + " " + problem->what);

@@ -7,6 +7,7 @@
 #include "lib/campaign/study_reader.h"
 #include "lib/campaign/study_table.h"
 #include "lib/io/run_layout.h"
+#include "lib/program/motion.h"
 
 namespace pbf::campaign_module {
 namespace {
@@ -31,7 +32,7 @@ Readings stored_readings(const Scene& scene) {
         g.kind);
   for (const std::string& of : loaded_names(scene))
     for (const ReadingColumn& c : load_columns(of, 0, 0)) columns.push_back(c);
-  return readings_of(columns);
+  return readings_of(columns, has_work(scene));
 }
 
 }  // namespace
@@ -41,6 +42,11 @@ void StudyReader::read_data() {
   double end = study_.members[0].scene.time.end;  // the shortest run
   for (const StudyMember& m : study_.members) end = std::min(end, m.scene.time.end);
   const Scene& scene = study_.members[0].scene;
+  for (const StudyMember& m : study_.members)
+    if (m.scene.compare != scene.compare)
+      problems_.add(path_, "compare",
+                    "differs between the runs; all of them are held to the same data: set it for "
+                    "every run, not in a variant");
   study_.comparisons =
       read_comparisons(scene.compare, stored_readings(scene), end, study_.scene_dir);
 }
@@ -59,10 +65,10 @@ std::vector<double> compare_with_data(const Study& study, const MemberResult& r,
   if (study.comparisons.empty()) return {};
   std::vector<double> out;
   double squares = 0;
-  const std::vector<StoredComparison> results =
-      compare_all(study.comparisons, [&](const Quantity& q) {
-        return QuantitySeries{r.series("time"), r.series(log_column(q.path, q.site, q.component))};
-      });
+  const std::vector<StoredComparison> results = compare_all(study.comparisons, [&](const Quantity&
+                                                                                       q) {
+    return without_start({r.series("time"), r.series(log_column(q.path, q.site, q.component))}, q);
+  });
   for (const StoredComparison& c : results) {
     out.push_back(number_of(c, "rms")), out.push_back(number_of(c, "rms_relative"));
     squares += out.back() * out.back();

@@ -27,7 +27,9 @@ SeriesOptions options_of(const Comparison& c) {
 
 /// The numbers of a result in their order; `unit`: that of the reading.
 std::vector<StoredComparison::Number> no_numbers(const std::string& unit) {
-  const std::string integral = unit == "1" ? "s" : unit == "N" ? "N s" : unit + " s";
+  const std::string integral = unit == "1"            ? "s"
+                               : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2)
+                                                      : unit + " s";
   return {{"rms", unit, kNone},         {"rms_relative", "1", kNone},
           {"bias", unit, kNone},        {"correlation", "1", kNone},
           {"points", "1", kNone},       {"lag_s", "s", kNone},
@@ -66,7 +68,8 @@ class OneComparison {
   StoredComparison compare(std::optional<double> lag, bool fitted) {
     if (!lag) return say("no lag could be fitted"), std::move(out_);
     try {
-      if (fitted) {
+      const CommonTimes n = common_times(own(), c_.data.series(), options_);
+      if (fitted && enough_points(n.common, n.times)) {
         const SeriesDifference read = compare_series(own(), c_.data.series(), options_);
         set("rms_as_read", read.rms);
         set("correlation_as_read", read.correlation.value_or(kNone));
@@ -133,6 +136,9 @@ class OneComparison {
     const auto [from, to] = common_span();
     const Area here = area_under(own(), from + options_.lag, to + options_.lag),
                there = area_under(c_.data.series(), from, to);
+    const double longer = std::max(here.length, there.length);
+    if (std::fabs(here.length - there.length) > 0.01 * longer)
+      return say("no mean and impulse, as one of the two has gaps");
     if (here.length > 0) set("impulse", here.integral), set("mean", here.integral / here.length);
     if (there.length > 0)
       set("impulse_data", there.integral), set("mean_data", there.integral / there.length);
@@ -143,6 +149,16 @@ class OneComparison {
   SeriesOptions options_;
   StoredComparison out_;
 };
+
+/// The lag of an entry, as far as it is known before a run; of a fitted one the least.
+double likely_lag(const Comparison& c, const std::vector<Comparison>& all) {
+  double number = 0;
+  if (c.lag_range) return std::clamp(0.0, (*c.lag_range)[0], (*c.lag_range)[1]);
+  if (read_number(c.lag, number) == NumberError::none) return number;
+  for (const Comparison& other : all)
+    if (name_of(other) == c.lag && other.lag_range) return likely_lag(other, all);
+  return 0;
+}
 
 }  // namespace
 
@@ -158,7 +174,7 @@ std::vector<DataComparison> read_comparisons(const std::vector<Comparison>& entr
     all.push_back({c, own, read_measured(c, own, folder, entry + ".data")});
     SeriesOptions o = options_of(c);
     const std::vector<double> whole{0, end}, zero{0, 0};
-    if (c.lag_range) o.lag = std::clamp(0.0, (*c.lag_range)[0], (*c.lag_range)[1]);
+    o.lag = likely_lag(c, entries);
     const CommonTimes n = common_times({whole, zero}, all.back().data.series(), o);
     if (!enough_points(n.common, n.times))
       bad_input(entry + ".data",

@@ -16,18 +16,25 @@ std::string unit_of(const StoredComparison& r, const char* number) {
   return unit == "1" ? "" : " " + unit;
 }
 
+/// "-" for a number that there is not.
+std::string number_text(double x, const char* form = "{:.4g}") {
+  return std::isnan(x) ? "-" : fmt::format(fmt::runtime(form), x);
+}
+
 /// "0.12 m (data 0.13)", or "-" where there is none.
 std::string both(const StoredComparison& r, const char* run, const char* data) {
   const double a = number_of(r, run), b = number_of(r, data);
-  const auto text = [](double x) { return std::isnan(x) ? "-" : fmt::format("{:.4g}", x); };
-  return text(a) + unit_of(r, run) + " (data " + text(b) + ")";
+  return number_text(a) + unit_of(r, run) + " (data " + number_text(b) + ")";
 }
 
 std::string lag_text(const StoredComparison& r) {
   const double lag = number_of(r, "lag_s"), read = number_of(r, "rms_as_read");
+  if (text_of(r, "lag") == "fit" && std::isnan(read))
+    return fmt::format("lag {:.4g} s, fitted", lag);
   if (!std::isnan(read))
-    return fmt::format("lag {:.4g} s, fitted; as read RMS {:.4g}{}, correlation {:.3f}", lag, read,
-                       unit_of(r, "rms"), number_of(r, "correlation_as_read"));
+    return fmt::format("lag {:.4g} s, fitted; as read RMS {:.4g}{}, correlation {}", lag, read,
+                       unit_of(r, "rms"),
+                       number_text(number_of(r, "correlation_as_read"), "{:.3f}"));
   return lag == 0 ? "no lag" : fmt::format("lag {:.4g} s, given", lag);
 }
 
@@ -44,11 +51,11 @@ std::string comparisons_text(const std::vector<StoredComparison>& results) {
       continue;
     }
     out += fmt::format(
-        "RMS {:.4g}{}{}, correlation {:.3f}, bias {:+.4g}{}, {:.0f} points, {}\n", rms,
+        "RMS {:.4g}{}{}, correlation {}, bias {:+.4g}{}, {:.0f} points, {}\n", rms,
         unit_of(r, "rms"),
         std::isnan(relative) ? "" : fmt::format(" ({:.3g} % of the data's range)", 100 * relative),
-        number_of(r, "correlation"), number_of(r, "bias"), unit_of(r, "bias"),
-        number_of(r, "points"), lag_text(r));
+        number_text(number_of(r, "correlation"), "{:.3f}"), number_of(r, "bias"),
+        unit_of(r, "bias"), number_of(r, "points"), lag_text(r));
     out += fmt::format("  {:17} peak {} at {}; arrival {}; mean {}; impulse {}\n", "",
                        both(r, "peak", "peak_data"), both(r, "peak_time_s", "peak_time_data_s"),
                        both(r, "arrival_s", "arrival_data_s"), both(r, "mean", "mean_data"),

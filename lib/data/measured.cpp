@@ -108,7 +108,7 @@ class TableReader {
   double time_factor(const std::string& column) const {
     const NamedUnit named = named_unit(column);
     if (named.unit && std::string(named.unit->unit) == "s")
-      return named.unit->factor * c_.time_scale.value_or(1);
+      return c_.time_scale.value_or(named.unit->factor);
     if (c_.time_scale) return *c_.time_scale;
     if (is_time(column)) return 1;
     fail(rows_[0].where, "column " + column +
@@ -119,14 +119,14 @@ class TableReader {
   double value_factor(const std::string& column) const {
     const NamedUnit named = named_unit(column);
     const std::string& unit = q_.site.unit;
-    const double scale = c_.scale.value_or(1);
-    if (named.unit && (unit == named.unit->unit || c_.scale)) return named.unit->factor * scale;
+    if (c_.scale) return *c_.scale;
+    if (named.unit && unit == named.unit->unit) return named.unit->factor;
     if (named.unit)
       fail(rows_[0].where,
            fmt::format("column {} is in {}, and {} is in {}; name another column, "
                        "or give scale, the {} of one {}",
                        column, named.unit->ending + 1, q_.names[0], unit, unit, named.unit->unit));
-    if (c_.scale || unit == "1") return scale;
+    if (unit == "1") return 1;
     fail(rows_[0].where,
          fmt::format("column {} has no unit; end its name in one ({}{}), or give scale, the {} of "
                      "one unit",

@@ -1,11 +1,13 @@
 #include "lib/data/quantity.h"
 
+#include <cmath>
 #include <map>
 #include <memory>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/io/run_layout.h"
+#include "lib/scene/difference.h"
 #include "lib/scene/gauge.h"
 #include "lib/scene/suggest.h"
 
@@ -26,7 +28,7 @@ bool reads_means(const std::string& kind) {
 /// Loads are means, their peaks are not.
 bool load_means(const std::string& path) {
   return path.starts_with("log/load/") && !path.ends_with("_peak") &&
-         path.find("/impulse") == path.npos;
+         path.find("/impulse_", path.rfind('/')) == path.npos;
 }
 
 /// With _ for /, as columns of tables are named.
@@ -38,10 +40,10 @@ std::string flat_name(std::string name) {
 
 }  // namespace
 
-Readings readings_of(const std::vector<ReadingColumn>& columns) {
+Readings readings_of(const std::vector<ReadingColumn>& columns, bool work) {
   const auto all = std::make_shared<std::map<std::string, ReadingSite>>();
   for (const auto& c : run_layout::log_columns()) (*all)[kLog + c.name] = {c.unit};
-  (*all)[kLog + "work"] = {"J"};
+  if (work) (*all)[kLog + "work"] = {"J"};
   for (const ReadingColumn& c : columns) {
     const bool means = c.join == Join::mean;
     if (c.series == Series::gauges) {
@@ -68,7 +70,9 @@ Readings readings_of(const RunReader& file) {
             if (!path.starts_with(kGauge) && !path.starts_with(kLog)) return std::nullopt;
             const RunColumn c = file.column(path);
             if (c.values.empty()) return std::nullopt;
-            return ReadingSite{c.unit, c.components, reads_means(c.kind) || load_means(path)};
+            const bool first = path.find('/', kGauge.size()) == path.npos;  // not total/Q, peak/P
+            return ReadingSite{c.unit, c.components,
+                               (first && reads_means(c.kind)) || load_means(path)};
           },
           [&file] {
             std::vector<std::string> names;
@@ -90,6 +94,7 @@ Quantity quantity_of(const Comparison& c, const Readings& readings, const std::s
     for (const std::string& of : {c.load, "load_" + c.load}) {
       q.names.push_back(of + "_" + c.component);
       if (force) q.names.push_back(of + "_force_" + c.component);
+      if (c.component == "force_peak") q.names.push_back(of + "_peak");
     }
   } else {
     q.path = kLog + c.log;
@@ -107,6 +112,8 @@ Quantity quantity_of(const Comparison& c, const Readings& readings, const std::s
                                      : "; did you mean " + near + "?"));
   }
   q.site = *site;
+  if (q.site.components == 1 && !c.gauge.empty() && !c.component.empty())
+    bad_input(key, c.gauge + " reads one number; leave out the component " + c.component);
   const std::size_t axis = std::string("xyz").find(c.component);
   if (q.site.components > 1 && (c.component.size() != 1 || axis == std::string::npos))
     bad_input(key, c.gauge + " reads a vector; give component: x, y or z");
@@ -127,7 +134,13 @@ QuantitySeries read_quantity(const RunReader& file, const Quantity& q) {
     out.value.push_back(own.values[at]);
   }
   out.time.resize(out.value.size());
-  return out;
+  return without_start(std::move(out), q);
+}
+
+QuantitySeries without_start(QuantitySeries series, const Quantity& q) {
+  // A mean over no time is stored as 0.
+  if (q.site.means && !series.value.empty()) series.value[0] = NAN;
+  return series;
 }
 
 }  // namespace pbf::data_module

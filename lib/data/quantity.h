@@ -25,8 +25,8 @@ struct Readings {
   std::function<std::optional<ReadingSite>(const std::string& path)> find;
   std::function<std::vector<std::string>()> names;
 };
-/// Those that a run will have; columns: of its plan.
-Readings readings_of(const std::vector<ReadingColumn>& columns);
+/// Those that a run will have; columns: of its plan; work: whether something moves (has_work()).
+Readings readings_of(const std::vector<ReadingColumn>& columns, bool work);
 /// Those of a file. The reader must outlive them.
 Readings readings_of(const RunReader& file);
 
@@ -46,5 +46,7 @@ struct QuantitySeries {
   std::vector<double> time, value;  ///< s, in its unit
 };
 QuantitySeries read_quantity(const RunReader& file, const Quantity& quantity);
+/// Without the first number of means, which is over no time.
+QuantitySeries without_start(QuantitySeries series, const Quantity& quantity);
 
 }  // namespace pbf::data_module

@@ -33,7 +33,8 @@ CommonReadings common_readings(const TimeSeries& own, const TimeSeries& referenc
   for (std::size_t k = 0; k < reference.time.size(); ++k) {
     const double t = reference.time[k];
     if (t < o.from - rounding(o.from) || t > o.to + rounding(o.to)) continue;
-    const double there = mean_about(reference, t, o.average);
+    // At a step of a digitised curve there are several readings at one time.
+    const double there = o.average > 0 ? mean_about(reference, t, o.average) : reference.value[k];
     if (!std::isfinite(there)) continue;
     ++out.times;
     out.low = std::min(out.low, there), out.high = std::max(out.high, there);

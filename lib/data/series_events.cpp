@@ -55,7 +55,8 @@ std::optional<LagFit> fit_lag(const TimeSeries& own, const TimeSeries& reference
                               const SeriesOptions& options, double low, double high) {
   const double fine = usual_interval(own);
   if (!(fine > 0)) return std::nullopt;
-  const double lags = kMostWork / double(std::max<std::size_t>(1, reference.time.size()));
+  const double window = 1 + (options.average > 0 ? options.average / fine : 0);  // readings
+  const double lags = kMostWork / window / double(std::max<std::size_t>(1, reference.time.size()));
   double step = std::max(fine, (high - low) / lags);
   LagSearch search(own, reference, options);
   // Whole readings from lag 0 on, so that a shifted copy is found exactly.

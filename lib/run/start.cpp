@@ -8,6 +8,7 @@
 #include "lib/base/machine.h"
 #include "lib/exec/make_solver.h"
 #include "lib/exec/ranks/world.h"
+#include "lib/program/motion.h"
 #include "lib/program/obstacles.h"
 #include "lib/run/emit.h"
 #include "lib/run/free_starts.h"
@@ -67,8 +68,9 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
               "its readings are those of run.vtkhdf, which the scene does not write; add output: "
               "{every: 0.1}");
   if (options.measured)
-    start.comparisons = read_comparisons(scene.compare, readings_of(start.plan.columns),
-                                         scene.time.end, start.loaded.folder);
+    start.comparisons =
+        read_comparisons(scene.compare, readings_of(start.plan.columns, has_work(scene)),
+                         scene.time.end, start.loaded.folder);
   if (options.warnings) start.warnings = scene_warnings(points, particles);
   if (options.strict && !start.warnings.empty())
     throw Error(ExitCode::difference, "--strict: " + warning_lines(start.warnings));

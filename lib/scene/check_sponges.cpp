@@ -1,11 +1,12 @@
 // Rules for sponges.
+#include <algorithm>
+
+#include "kernels/pass_sponge.h"
 #include "lib/scene/scene_rules.h"
 #include "lib/scene/sponge.h"
 
 namespace pbf::scene_module {
 namespace {
-
-constexpr std::size_t kMostSponges = 8;  // of kernels/pass_sponge.h
 
 class SpongeChecker : public SceneRules {
  public:
@@ -14,8 +15,9 @@ class SpongeChecker : public SceneRules {
   void run() {
     constexpr std::array<const char*, 0> none{};
     check_names(s_.damping, "damping", "a zone", none, "");
-    if (s_.damping.size() > kMostSponges)
-      add(s_.damping[kMostSponges].name, "is the 9th zone, at most 8 are possible; remove some");
+    if (s_.damping.size() > std::size_t(kMostSponges))
+      add(s_.damping[std::size_t(kMostSponges)].name,
+          "is the 9th zone, at most 8 are possible; remove some");
     for (const Sponge& k : s_.damping) check(k);
   }
 
@@ -27,6 +29,9 @@ class SpongeChecker : public SceneRules {
       add(k.rate,
           "auto is 15 over the period of the first obstacle that oscillates, and none does; give "
           "a rate in 1/s");
+    if (good(k.toward) && std::ranges::find(kFaceNames, k.toward) == kFaceNames.end())
+      return add(k.toward, "is \"{}\", expected a face: x_min, x_max, y_min, y_max, z_min or z_max",
+                 k.toward);
     if (good(k.toward) && flat() && k.toward[0] == 'y')
       add(k.toward, "{} is no wall with dimensions: 2; name another face", k.toward);
     if (!good(k.min, k.max) || !above(k.min, k.max) || !good(s_.domain.min, s_.domain.max)) return;

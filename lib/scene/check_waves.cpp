@@ -78,6 +78,11 @@ class WaveChecker : public SceneRules {
     if (m.band && !((*m.band)[0] < (*m.band)[1]))
       return fail(m.band, "its lowest frequency {} is not below its highest, {}; give [0.4, 3]",
                   (*m.band)[0], (*m.band)[1]);
+    if (m.kind == MotionKind::irregular_waves || m.kind == MotionKind::focused_waves) {
+      const auto [low, high] = m.band.value_or(std::array{0.4, 3.0});
+      if (!(wave_spectrum(std::clamp(1.0, low, high), 1) > 1e-200))
+        return fail(m.band, "holds no energy of the spectrum, whose peak is at 1; give [0.4, 3]");
+    }
     if (m.heights.size() != m.times.size() && m.kind == MotionKind::solitary_waves)
       return fail(m.times, "has {} numbers, heights has {}; give one of each wave", m.times.size(),
                   m.heights.size());

@@ -32,12 +32,10 @@ KeyRows compare_rows() {
            "so on."),
        key(OF(time_column), plain, "Its column of times. Empty: the first named t or time (t_ms)."),
        key(OF(time_scale), number("s", {1e-12, 1e12}),
-           "Seconds of one unit of the times; auto: from the column's name. Multiplies a unit in "
-           "the name.",
-           automatic),
+           "Seconds of one unit of the times; auto: from the column's name.", automatic),
        key(OF(scale), number("", {-1e30, 1e30}),
            "The column times scale plus offset is the measured value; auto: from the unit in the "
-           "column's name, which it multiplies.",
+           "column's name.",
            automatic),
        key(OF(offset), number("", kCoordinate), "In the unit of the reading."),
        key(OF(average), number("s", {0, 1e9}),

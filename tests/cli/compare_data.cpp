@@ -93,6 +93,28 @@ TEST_CASE(
   const pbf::Json all = pbf::Json::parse(later.out);
   CHECK(all.at("again").at("lag_s").get<double>() == Approx(0.07));
   CHECK(all.at("U_z").at("unit") == "m/s");
+  const Outcome twice = pbf_in(folder, {"compare-data", "b", "--data", "data.csv", "--gauge",
+                                        "H=H_mm", "--gauge", "H=H_mm"});
+  CHECK(twice.code == 2);
+  CHECK(has(twice.err, "H is compared twice"));
+  // A clock that began much later: the lag makes the data those of the run.
+  folder.write(
+      "late.csv", "t,H_m\n" + [&] {
+        const pbf::RunReader file((folder / "a/run.vtkhdf").string());
+        std::string rows;
+        const auto time = file.gauge("time"), level = file.gauge("H");
+        for (std::size_t k = 0; k < time.size(); ++k)
+          rows += fmt::format("{:.17g},{:.17g}\n", time[k] - 8, level[k]);
+        return rows;
+      }());
+  for (const char* lag : {"8", "fit"}) {
+    Args words{"compare-data", "b", "--data", "late.csv", "--gauge", "H", "--lag", lag, "--json"};
+    if (lag == std::string("fit")) words.push_back("--lag-range=7.9,8.1");
+    const Outcome late = pbf_in(folder, words);
+    CAPTURE(late.err);
+    REQUIRE(late.code == 0);
+    CHECK(pbf::Json::parse(late.out).at("H").at("rms").get<double>() < 1e-9);
+  }
   const Outcome options = pbf_in(
       folder, {"compare-data", "b", "--data", "data.csv", "--gauge", "H=H_mm", "--lag", "0.07"});
   CHECK(options.code == 0);

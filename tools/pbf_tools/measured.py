@@ -109,11 +109,11 @@ def _named_like(gauge: Gauge, names: list[str], table: Table,
 
 
 def _factor(gauge: Gauge, table: Table, column: str) -> float | None:
-    unit = _unit(table, column, gauge.name)
+    unit = unit_of(table, column, gauge.name)
     return units.factor(unit, gauge.unit) if unit else 1.0
 
 
-def _unit(table: Table, column: str, name: str = "") -> str:
+def unit_of(table: Table, column: str, name: str = "") -> str:
     """The unit that the head of a table or the name of a column says; a gauge's name says none."""
     said = table.units.get(column, "1")
     return said if said != "1" else "" if column == name else units.split(column)[1]
@@ -127,7 +127,7 @@ def _read(args: argparse.Namespace, gauge: Gauge, path: str, table: Table,
         raise BadInput(f"{path}: column {column} or its times are no numbers")
     scale = _factor(gauge, table, column) if args.scale is None else args.scale
     if scale is None:
-        raise BadInput(f"{path}: column {column} is in {_unit(table, column)}, and gauge "
+        raise BadInput(f"{path}: column {column} is in {unit_of(table, column)}, and gauge "
                        f"{gauge.name} reads a {gauge.kind} in {gauge.unit}: name another column "
                        f"(--column {gauge.name}=NAME), or give --scale, the {gauge.unit} of one "
                        "unit")
@@ -155,7 +155,7 @@ def _seconds(args: argparse.Namespace, table: Table, name: str, path: str) -> fl
     """The seconds of one unit of a time column."""
     if args.time_scale is not None:
         return args.time_scale
-    unit = _unit(table, name) or ("s" if name in SECONDS else "")
+    unit = unit_of(table, name) or ("s" if name in SECONDS else "")
     if not unit:
         raise BadInput(f"{path}: column {name} has no unit of time: give --time-scale, the seconds "
                        "of one unit")

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import units
+from . import measured, units
 from .errors import BadInput, UnknownName, unknown
 from .gauges import Gauge
 from .logs import read_run
-from .measured import time_column
 from .run_file import Run
 from .scene_text import gravity_in
 from .table import need, read_csv
@@ -107,7 +106,7 @@ def columns_of(path: str, args: argparse.Namespace) -> tuple[list[Gauge], list[f
     """The same of a table."""
     table, wanted = read_csv(path), names_and_places(args.gauges)
     need(table, list(wanted), path)
-    clock = time_column(table, args.time_column, path)
+    clock = measured.time_column(table, args.time_column, path)
     for name in (clock, *wanted):
         if table[name].dtype.kind != "f":
             raise BadInput(f"{path}: column {name} is not one of numbers")
@@ -118,8 +117,12 @@ def columns_of(path: str, args: argparse.Namespace) -> tuple[list[Gauge], list[f
     if args.depth is None:
         raise BadInput(f"{path}: give the depth of the still water in m, --depth D")
 
+    if not measured.unit_of(table, clock) and clock not in measured.SECONDS:
+        raise BadInput(f"{path}: column {clock} has no unit of time; name it {clock}_s if it is in "
+                       "seconds, or choose another with --time-column")
+
     def numbers(name: str, unit: str, scale: float | None) -> np.ndarray:
-        said = units.split(name)[1] or unit
+        said = measured.unit_of(table, name) or unit
         own = units.factor(said, unit) if scale is None else scale
         if own is None:
             raise BadInput(f"{path}: column {name} is in {said}, expected {unit}; name another, or "

@@ -16,7 +16,7 @@ Readings level_and_force() {
   std::vector<ReadingColumn> columns{{"level", "H2", "", "m"}, {"velocity", "U", "", "m/s"}};
   columns[1].components = 3;
   columns.push_back({"load", "post", "force", "N", "", Join::mean, 3, Series::measures});
-  return readings_of(columns);
+  return readings_of(columns, false);
 }
 
 Measured read(const std::string& table, Comparison c = {}) {
@@ -58,7 +58,7 @@ TEST_CASE("units at the ends of names convert times and values") {
   CHECK(a.column == "H2_mm");
   const Measured b =
       read("# unit: m\ntime,x_cm\n1,10\n2,\n3,nan\n",
-           with([](Comparison& c) { c.column = "x_cm", c.scale = 2, c.offset = 0.5; }));
+           with([](Comparison& c) { c.column = "x_cm", c.scale = 0.02, c.offset = 0.5; }));
   CHECK(b.value[0] == Approx(0.7));
   CHECK(std::isnan(b.value[1]));
   CHECK(std::isnan(b.value[2]));
@@ -129,4 +129,6 @@ TEST_CASE("a reading that is not there is named with the nearest one") {
   CHECK(has(of([](Comparison& c) { c.gauge = "U"; }), "reads a vector; give component"));
   CHECK(of([](Comparison& c) { c.log = "load/post/torque_y"; }) != "accepted");
   CHECK(of([](Comparison& c) { c.log = "load/post/force_y"; }) == "accepted");
+  CHECK(has(of([](Comparison& c) { c.gauge = "H2", c.component = "x"; }), "reads one number"));
+  CHECK(has(of([](Comparison& c) { c.log = "work"; }), "the log has no column work"));
 }

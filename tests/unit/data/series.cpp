@@ -110,3 +110,14 @@ TEST_CASE("too few common readings are an error with their numbers, never NaN") 
   CHECK(d.points == 20);
   CHECK(d.rms == Approx(1));
 }
+
+TEST_CASE("at a step of a digitised curve both of its values count") {
+  Samples data(24, 0.1, at);
+  for (std::size_t k = 1; k < 24; k += 2) data.time[k] = data.time[k - 1];
+  for (std::size_t k = 0; k < 24; ++k) data.value[k] = k % 2 ? 5 : 0;
+  const Samples own(24, 0.1, [](std::size_t) { return 0.0; });
+  const SeriesDifference d = compare_series(own.series(), data.series());
+  CHECK(d.points == 24);
+  CHECK(d.bias == Approx(-2.5));
+  CHECK(d.range == 5);
+}

@@ -143,11 +143,12 @@ TEST_CASE("readings: closed walls and obstacles with loads have columns, others 
     });
     return out;
   };
-  const std::vector<std::string> of_b = {"b force_x",  "b force_y",  "b force_z",   "b torque_x",
-                                         "b torque_y", "b torque_z", "b force_peak"};
+  const std::vector<std::string> of_b = {"b force_x",   "b force_y",  "b force_z",    "b torque_x",
+                                         "b torque_y",  "b torque_z", "b force_peak", "b impulse_x",
+                                         "b impulse_y", "b impulse_z"};
   CHECK(columns({}) == of_b);
-  CHECK(columns({"domain.loads=true"}).size() == 7 * 7);
-  CHECK(columns({"domain.loads=true", "domain.open=[z_max, x_min]"}).size() == 5 * 7);
+  CHECK(columns({"domain.loads=true"}).size() == 7 * 10);
+  CHECK(columns({"domain.loads=true", "domain.open=[z_max, x_min]"}).size() == 5 * 10);
   CHECK(columns({"domain.loads=true", "obstacles=[]", "dimensions=2", "domain.max=[1, 0.1, 1]"})
             .size() == 4 * 7);
   CHECK(columns({"obstacles=[]"}).empty());

@@ -45,23 +45,25 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
                     xsph = "xsph pass: no key viscosity",
                     slip = "friction pass: friction is 0 on all walls and obstacles",
                     curl = "curl and confinement passes, curl array: no key vorticity",
+                    sponges = "sponge pass: no key damping",
                     loads =
                         "loads on the walls: domain.loads is false, and no obstacle has loads "
                         "or motion",
                     gauges = "gauges: no key gauges";
-  CHECK(left_out("", {}) ==
-        Lines{tank, density, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
+  CHECK(left_out("", {}) == Lines{tank, density, levels, pressure, rows, xsph, slip, curl, sponges,
+                                  loads, gauges, order, calm});
   CHECK(left_out("", {"solver.fused=false"}) ==
-        Lines{tank, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
+        Lines{tank, levels, pressure, rows, xsph, slip, curl, sponges, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.iterations=0"}) ==
         Lines{tank, iterations, "levels: grids coarser than h: solver.iterations is 0", rows, xsph,
-              slip, curl, loads, gauges, order,
+              slip, curl, sponges, loads, gauges, order,
               "passes of hyperviscosity, its array: solver.iterations is 0"});
   CHECK(left_out("", {"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}) ==
-        Lines{tank, density, levels, pressure, rows, xsph, slip, curl, loads, gauges, order, calm});
+        Lines{tank, density, levels, pressure, rows, xsph, slip, curl, sponges, loads, gauges,
+              order, calm});
   CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) == Lines{obstacles, tank, free, density, levels,
-                                                             pressure, rows, slip, curl, loads,
-                                                             gauges, order, calm});
+                                                             pressure, rows, slip, curl, sponges,
+                                                             loads, gauges, order, calm});
   CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) ==
         Lines{tank, free, density, levels, pressure, rows, xsph, slip, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,

@@ -100,6 +100,10 @@ Scene unlike_default() {
   slot.size = {1.0 / 7};
   slot.path = "odd name #4: [v].csv";
   s.emitters = {jet, slot};
+  Sponge end;
+  end.name = "end", end.min = {0.5, 0, 0.1}, end.max = {1.0 / 3 + 1, 0.04, 2};
+  end.toward = "z_min", end.rate = 1.0 / 7, end.profile = 3, end.axes = {"z", "x"};
+  s.damping = {end};
   Comparison c;
   c.name = "post", c.load = "z_min", c.component = "torque_y", c.data = "post.csv",
   c.column = "M_mNm";
@@ -296,11 +300,13 @@ TEST_CASE("table of keys: every default lies in its own range") {
     obstacle.free.emplace();
     Emitter emitter;
     Comparison comparison;
+    Sponge sponge;
     Node node;
     const Block* list = key.block->list_around();
     const bool of_body = list && list->path == "bodies[]", of_scene = !list,
                of_emitter = list && list->path == "emitters[]",
-               of_comparison = list && list->path == "compare[]";
+               of_comparison = list && list->path == "compare[]",
+               of_sponge = list && list->path == "damping[]";
     const std::string text = value_text(key, of_scene ? object(defaults) : key.standard);
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
@@ -311,6 +317,7 @@ TEST_CASE("table of keys: every default lies in its own range") {
                                : of_body       ? object(body)
                                : of_emitter    ? object(emitter)
                                : of_comparison ? object(comparison)
+                               : of_sponge     ? object(sponge)
                                                : object(obstacle)))
               .empty());
   }

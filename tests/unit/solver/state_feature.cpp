@@ -180,7 +180,7 @@ TEMPLATE_TEST_CASE("a further field of the state is in a checkpoint, from which 
 TEST_CASE(
     "values of a state: zeros for rows of another scene, an error for another number of "
     "particles") {
-  const std::size_t numbers = 9;
+  const std::size_t numbers = 12;
   SolverState s;
   s.fields = {{"loads", false, 8, std::vector<double>(2 * 8, 1.5)},
               {"temperature", true, 1, {1, 2}}};
@@ -193,7 +193,7 @@ TEST_CASE(
   CHECK(values_of(s, field::flows, 2) == std::vector<double>(6));
   CHECK(values_of(s, field::temperature, 2) == std::vector<double>{1, 2});
   CHECK_THROWS_AS(values_of(s, field::temperature, 3), Error);
-  s.fields[0] = {"loads", false, 10, std::vector<double>(20)};
+  s.fields[0] = {"loads", false, 13, std::vector<double>(26)};
   CHECK_THROWS_AS(values_of(s, field::loads, 2), Error);
 }
 

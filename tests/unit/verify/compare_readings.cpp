@@ -94,7 +94,7 @@ TEST_CASE("loads that only one side has are named and not compared", "[compare]"
                                   defect_scene("solids", {"domain.loads=false"}), "cpu:double", 1);
   CHECK(r.same());
   CHECK(r.notes.at(1) ==
-        "42 loads and readings of gauges are on one side only and not compared, the first is "
+        "60 loads and readings of gauges are on one side only and not compared, the first is "
         "loads: x_min force_x of A");
   for (const CompareRow& one : r.parts[0].rows) CHECK(one.what != "loads: x_min force_x");
 }
