@@ -150,7 +150,7 @@ TEST_CASE("readings: closed walls and obstacles with loads have columns, others 
   CHECK(columns({"domain.loads=true"}).size() == 7 * 10);
   CHECK(columns({"domain.loads=true", "domain.open=[z_max, x_min]"}).size() == 5 * 10);
   CHECK(columns({"domain.loads=true", "obstacles=[]", "dimensions=2", "domain.max=[1, 0.1, 1]"})
-            .size() == 4 * 7);
+            .size() == 4 * 10);
   CHECK(columns({"obstacles=[]"}).empty());
 }
 

@@ -64,8 +64,9 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
   CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) == Lines{obstacles, tank, free, density, levels,
                                                              pressure, rows, slip, curl, sponges,
                                                              loads, gauges, order, calm});
-  CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) ==
-        Lines{tank, free, density, levels, pressure, rows, xsph, slip, gauges, order, calm});
+  CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) == Lines{tank, free, density, levels,
+                                                                 pressure, rows, xsph, slip,
+                                                                 sponges, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,
                  {"solver.levels=on", "tensile.k=0.01", "solver.fused=false", "viscosity.xsph=0.1",
                   "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{rows, slip, order, calm});

@@ -101,7 +101,7 @@ Scene unlike_default() {
   slot.path = "odd name #4: [v].csv";
   s.emitters = {jet, slot};
   Sponge end;
-  end.name = "end", end.min = {0.5, 0, 0.1}, end.max = {1.0 / 3 + 1, 0.04, 2};
+  end.name = "end", end.min = {-1.0 / 7, -0.02, 0.1}, end.max = {0.25, 0.06, 2};
   end.toward = "z_min", end.rate = 1.0 / 7, end.profile = 3, end.axes = {"z", "x"};
   s.damping = {end};
   Comparison c;
