@@ -65,8 +65,8 @@ TEST_CASE("obstacles alone, without loads of the walls, have columns of their ow
     return std::count_if(columns.begin(), columns.end(),
                          [&](const std::string& c) { return c.rfind("load/" + of, 0) == 0; });
   };
-  CHECK(loads("step/") == 7);
-  CHECK(loads("") == 14);
+  CHECK(loads("step/") == 10);
+  CHECK(loads("") == 20);
 }
 
 TEST_CASE("a stopped run with obstacles and loads ends in the bytes of the undisturbed run",

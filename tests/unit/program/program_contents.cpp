@@ -69,7 +69,8 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
                                                                  sponges, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,
                  {"solver.levels=on", "tensile.k=0.01", "solver.fused=false", "viscosity.xsph=0.1",
-                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{rows, slip, order, calm});
+                  "vorticity.epsilon=0.1", "domain.loads=true"}) ==
+        Lines{rows, slip, sponges, order, calm});
 }
 
 TEST_CASE("program: passes are counted as often as they run at most, with what tests a tolerance") {
