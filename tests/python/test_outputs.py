@@ -168,7 +168,7 @@ def test_info_stability_and_batches_have_json(written):
     assert list(info) == names(row.partition("JSON: ")[2])
     lines = {line.split()[0]: line for line in written("info").splitlines()}
     assert info["commit"] in lines["commit"] and f" {info['threads']}" in lines["threads"]
-    written("stability", "pool_at_rest", "--reduced", "--quiet", "--csv", "case.csv", "--json", "case.json")
+    written("stability", "step_0.01_iterations_1", "--reduced", "--quiet", "--csv", "case.csv", "--json", "case.json")
     case = json.loads((written.folder / "case.json").read_text())
     with open(written.folder / "case.csv", newline="") as file:
         rows = list(csv.DictReader(file))
