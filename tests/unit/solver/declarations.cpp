@@ -22,6 +22,8 @@ struct Scenario {
 constexpr const char* kFreeBox =
     R"(obstacles=[{"name":"a","shape":"box","min":[0.03,0.03,0.5],"max":[0.08,0.08,0.6],)"
     R"("free":{"density":300}}])";
+const std::string kEverywhere =
+    R"(damping=[{"name":"a","min":[-9,-9,-9],"max":[9,9,9],"toward":"x_max","rate":3}])";
 const std::vector<Scenario> kScenarios = {
     {"configs/minimal", {"fluid.spacing=0.05"}},
     {"configs/minimal", {"fluid.spacing=0.05", "solver.fused=false", "tensile={}"}},
@@ -36,6 +38,8 @@ const std::vector<Scenario> kScenarios = {
      {"fluid.spacing=0.05", "solver.velocity_damping=0.9", "solver.substeps=3",
       "viscosity.xsph=0.1"},
      0.1},
+    {"configs/minimal", {"fluid.spacing=0.05", kEverywhere}},
+    {"configs/minimal", {"fluid.spacing=0.05", kEverywhere, "time.order=1"}},
     {"configs/extreme/points", {"bodies[0].path=one_place.csv"}},
     {"configs/extreme/points",
      {"bodies[0].path=one_place.csv", "solver.substeps=2", "solver.iterations=1"}},
