@@ -112,8 +112,9 @@ int command_compare_data(const CompareDataOptions& o) {
                                            ": its scene compares nothing; give --data FILE "
                                            "and --gauge NAME");
     // Where the data was, if it is still there; else as for the other files of the scene.
+    const std::vector<StoredComparison> stored = file.comparisons();
     for (Comparison& c : wanted)
-      for (const StoredComparison& before : file.comparisons())
+      for (const StoredComparison& before : stored)
         if (const std::string there = text_of(before, "file");
             before.name == name_of(c) && std::filesystem::exists(there))
           c.data = there;

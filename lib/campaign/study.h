@@ -66,8 +66,14 @@ Study load_study(const std::string& path, const std::vector<std::string>& overri
 /// The measures that can be plotted against run time; `errors` are some of them.
 std::vector<std::string> study_error_measures(const Study& study);
 
-/// The columns of MemberResult::log that not every run has: the numbers of gauges, `work` where
-/// something moves, and loads.
+/// The readings that a result holds: those of gauges, and loads.
+std::vector<ReadingColumn> stored_readings(const Scene& scene);
+/// The column of MemberResult::log of a number of one: "gauge/H2", "gauge/U/x",
+/// "load/post/force_x".
+std::string stored_column(const ReadingColumn& column, int component);
+
+/// The columns of MemberResult::log that not every run has: stored_readings(), and `work` where
+/// something moves.
 struct FurtherColumn {
   std::string name;  ///< "gauge/H2", "gauge/U/x", "work", "load/post/force_x"
   const char* unit;

@@ -1,12 +1,9 @@
 // A study's errors against measurements, as the scene's `compare` asks for.
-#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
-#include "lib/base/error.h"
 #include "lib/campaign/study_reader.h"
 #include "lib/campaign/study_table.h"
-#include "lib/io/run_layout.h"
 #include "lib/program/motion.h"
 
 namespace pbf::campaign_module {
@@ -17,22 +14,6 @@ std::string log_column(const std::string& path, const ReadingSite& site, int com
   if (path.starts_with("log/")) return path.substr(4);
   return "gauge/" + path.substr(path.find('/') + 1) +
          (site.components > 1 ? std::string("/") + "xyz"[component] : "");
-}
-
-/// The readings that results of `scene` hold.
-Readings stored_readings(const Scene& scene) {
-  std::vector<ReadingColumn> columns;
-  for (const Gauge& g : scene.gauges)
-    std::visit(
-        [&](const auto& kind) {
-          for (const GaugeColumn& c : kind.columns)
-            if (!*c.name)
-              columns.push_back({kind.word, g.name, c.name, c.unit, "", c.join, c.components});
-        },
-        g.kind);
-  for (const std::string& of : loaded_names(scene))
-    for (const ReadingColumn& c : load_columns(of, 0, 0)) columns.push_back(c);
-  return readings_of(columns, has_work(scene));
 }
 
 }  // namespace
@@ -47,8 +28,8 @@ void StudyReader::read_data() {
       problems_.add(path_, "compare",
                     "differs between the runs; all of them are held to the same data: set it for "
                     "every run, not in a variant");
-  study_.comparisons =
-      read_comparisons(scene.compare, stored_readings(scene), end, study_.scene_dir);
+  study_.comparisons = read_comparisons(
+      scene.compare, readings_of(stored_readings(scene), has_work(scene)), end, study_.scene_dir);
 }
 
 std::vector<std::string> comparison_measures(const Study& study) {

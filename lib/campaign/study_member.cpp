@@ -19,16 +19,6 @@ double seconds_of(const Session& session, const Study& study) {
   return study.cpu_clock ? session.seconds().cpu : session.seconds().wall;
 }
 
-/// "load/post/force_x"
-std::string load_column(const ReadingColumn& c, int component) {
-  return std::string(c.kind) + "/" + c.of + "/" + number_name(c, component);
-}
-
-/// "gauge/U/x"; `number`: of number_name().
-std::string gauge_column(const std::string& gauge, const std::string& number) {
-  return "gauge/" + gauge + (number.empty() ? "" : "/" + number);
-}
-
 /// Adds a row to the columns; returns whether the run may continue. `regular`: a longer run would
 /// measure here, too.
 bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
@@ -36,10 +26,10 @@ bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
   if (!scene.gauges.empty()) {
     const std::vector<double> numbers =
         solver.readings(Series::gauges, regular ? Interval::ends : Interval::goes_on);
-    for_each_number(
-        plan.columns, Series::gauges, [&](const ReadingColumn& c, int component, std::size_t k) {
-          out.log[gauge_column(c.of, number_name(c, component))].push_back(numbers.at(k));
-        });
+    for_each_number(plan.columns, Series::gauges,
+                    [&](const ReadingColumn& c, int component, std::size_t k) {
+                      out.log[stored_column(c, component)].push_back(numbers.at(k));
+                    });
   }
   LogRow row;
   row.measures = solver.diagnose();
@@ -52,7 +42,7 @@ bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
     for_each_number(plan.columns, Series::measures,
                     [&](const ReadingColumn& c, int component, std::size_t k) {
                       if (c.kind == std::string_view("load"))
-                        out.log[load_column(c, component)].push_back(numbers.at(k));
+                        out.log[stored_column(c, component)].push_back(numbers.at(k));
                     });
   }
   energy.follow(row.measures);
@@ -70,22 +60,33 @@ bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
 
 }  // namespace
 
-std::vector<FurtherColumn> further_columns(const Scene& scene) {
-  std::vector<FurtherColumn> all;
+std::vector<ReadingColumn> stored_readings(const Scene& scene) {
+  std::vector<ReadingColumn> all;
   for (const Gauge& g : scene.gauges)
     std::visit(
         [&](const auto& kind) {
-          for (const GaugeColumn& c : kind.columns) {
-            const ReadingColumn column{kind.word, g.name, c.name, c.unit, "", c.join, c.components};
-            for (int k = 0; k < c.components; ++k)
-              all.push_back({gauge_column(g.name, number_name(column, k)), c.unit});
-          }
+          for (const GaugeColumn& c : kind.columns)
+            all.push_back({kind.word, g.name, c.name, c.unit, "", c.join, c.components});
         },
         g.kind);
+  for (const std::string& of : loaded_names(scene)) {
+    const std::vector<ReadingColumn> columns = load_columns(of, 0, 0);
+    all.insert(all.end(), columns.begin(), columns.end());
+  }
+  return all;
+}
+
+std::string stored_column(const ReadingColumn& c, int component) {
+  if (c.series != Series::gauges) return run_layout::further_column(c, component);
+  const std::string number = number_name(c, component);
+  return "gauge/" + c.of + (number.empty() ? "" : "/" + number);
+}
+
+std::vector<FurtherColumn> further_columns(const Scene& scene) {
+  std::vector<FurtherColumn> all;
+  for (const ReadingColumn& c : stored_readings(scene))
+    for (int k = 0; k < c.components; ++k) all.push_back({stored_column(c, k), c.unit});
   if (has_work(scene)) all.push_back({"work", "J"});
-  for (const std::string& of : loaded_names(scene))
-    for (const ReadingColumn& c : load_columns(of, 0, 0))
-      for (int k = 0; k < c.components; ++k) all.push_back({load_column(c, k), c.unit});
   return all;
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lib/base/error.h"
-#include "lib/data/units.h"
 #include "lib/scene/number.h"
 
 namespace pbf::data_module {
@@ -68,12 +67,11 @@ class OneComparison {
   StoredComparison compare(std::optional<double> lag, bool fitted) {
     if (!lag) return say("no lag could be fitted"), std::move(out_);
     try {
-      const CommonTimes n = common_times(own(), c_.data.series(), options_);
-      if (fitted && enough_points(n.common, n.times)) {
-        const SeriesDifference read = compare_series(own(), c_.data.series(), options_);
-        set("rms_as_read", read.rms);
-        set("correlation_as_read", read.correlation.value_or(kNone));
-      }
+      if (fitted)
+        if (const auto read = difference_of(own(), c_.data.series(), options_)) {
+          set("rms_as_read", read->rms);
+          set("correlation_as_read", read->correlation.value_or(kNone));
+        }
       options_.lag = *lag;
       const SeriesDifference d = compare_series(own(), c_.data.series(), options_);
       set("rms", d.rms), set("rms_relative", d.rms_relative.value_or(kNone)), set("bias", d.bias);

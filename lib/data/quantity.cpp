@@ -52,7 +52,7 @@ Readings readings_of(const std::vector<ReadingColumn>& columns, bool work) {
       continue;
     }
     for (int k = 0; k < c.components; ++k)
-      (*all)[kLog + c.kind + "/" + c.of + "/" + number_name(c, k)] = {c.unit, 1, means};
+      (*all)[kLog + run_layout::further_column(c, k)] = {c.unit, 1, means};
   }
   return {[all](const std::string& path) {
             const auto at = all->find(path);

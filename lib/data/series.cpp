@@ -63,6 +63,23 @@ std::optional<double> correlation_of(const std::vector<double>& a, const std::ve
   return std::clamp(ab / (std::sqrt(aa) * std::sqrt(bb)), -1.0, 1.0);
 }
 
+SeriesDifference difference(const CommonReadings& both) {
+  SeriesDifference out;
+  out.points = both.own.size();
+  out.interpolated = both.interpolated;
+  double squares = 0;
+  for (std::size_t k = 0; k < out.points; ++k) {
+    const double e = both.own[k] - both.reference[k];
+    squares += e * e;
+    out.bias += e / double(out.points);
+  }
+  out.rms = std::sqrt(squares / double(out.points));
+  out.range = both.high - both.low;
+  if (out.range > 0) out.rms_relative = out.rms / out.range;
+  out.correlation = correlation_of(both.own, both.reference);
+  return out;
+}
+
 }  // namespace
 
 double value_at(const TimeSeries& s, double t) {
@@ -112,28 +129,22 @@ CommonTimes common_times(const TimeSeries& own, const TimeSeries& reference,
   return {both.times, both.own.size()};
 }
 
+std::optional<SeriesDifference> difference_of(const TimeSeries& own, const TimeSeries& reference,
+                                              const SeriesOptions& options) {
+  const CommonReadings both = common_readings(own, reference, options);
+  return enough_points(both.own.size(), both.times) ? std::optional(difference(both))
+                                                    : std::nullopt;
+}
+
 SeriesDifference compare_series(const TimeSeries& own, const TimeSeries& reference,
                                 const SeriesOptions& options) {
   const CommonReadings both = common_readings(own, reference, options);
-  SeriesDifference out;
-  out.points = both.own.size();
-  out.interpolated = both.interpolated;
-  if (!enough_points(out.points, both.times))
+  if (!enough_points(both.own.size(), both.times))
     throw Error(ExitCode::bad_input,
                 fmt::format("{} of the reference's {} readings can be compared; at least {} and "
                             "half of them are needed",
-                            out.points, both.times, kFewestPoints));
-  double squares = 0;
-  for (std::size_t k = 0; k < out.points; ++k) {
-    const double e = both.own[k] - both.reference[k];
-    squares += e * e;
-    out.bias += e / double(out.points);
-  }
-  out.rms = std::sqrt(squares / double(out.points));
-  out.range = both.high - both.low;
-  if (out.range > 0) out.rms_relative = out.rms / out.range;
-  out.correlation = correlation_of(both.own, both.reference);
-  return out;
+                            both.own.size(), both.times, kFewestPoints));
+  return difference(both);
 }
 
 }  // namespace pbf::data_module

@@ -69,7 +69,10 @@ struct CommonTimes {
 CommonTimes common_times(const TimeSeries& own, const TimeSeries& reference,
                          const SeriesOptions& options = {});
 
-/// Compares at the times of the reference. Throws Error(bad_input), which gives the numbers, where
+/// Compares at the times of the reference; none where enough_points() says no.
+std::optional<SeriesDifference> difference_of(const TimeSeries& own, const TimeSeries& reference,
+                                              const SeriesOptions& options = {});
+/// The same. Throws Error(bad_input), which gives the numbers, where
 /// enough_points() says no.
 SeriesDifference compare_series(const TimeSeries& own, const TimeSeries& reference,
                                 const SeriesOptions& options = {});

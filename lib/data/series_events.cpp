@@ -28,9 +28,8 @@ class LagSearch {
   double correlation(double lag) const {
     SeriesOptions o = o_;
     o.lag = lag;
-    const CommonTimes n = common_times(own_, reference_, o);
-    if (!enough_points(n.common, n.times)) return -2;
-    return compare_series(own_, reference_, o).correlation.value_or(-2);
+    const std::optional<SeriesDifference> d = difference_of(own_, reference_, o);
+    return d ? d->correlation.value_or(-2) : -2;
   }
   /// Tries low, low + step ... high.
   void try_all(double low, double high, double step) {

@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "lib/base/text.h"
-
 namespace pbf::data_module {
 
 std::string unit_ending(const std::string& unit) {
@@ -40,12 +38,6 @@ NamedUnit named_unit(const std::string& column) {
       best = &e;
   if (!best) return {column};
   return {column.substr(0, column.size() - std::strlen(best->ending)), *best};
-}
-
-std::string known_endings() {
-  std::vector<std::string> all;
-  for (const UnitEnding& e : unit_endings()) all.emplace_back(e.ending);
-  return joined(all, " ");
 }
 
 }  // namespace pbf::data_module

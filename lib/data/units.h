@@ -27,7 +27,4 @@ NamedUnit named_unit(const std::string& column);
 /// "_kg_m_s" for "kg m/s": how a column of readings in that unit ends; "" for a number alone ("1").
 std::string unit_ending(const std::string& unit);
 
-/// "_s, _ms, _m ...", for messages.
-std::string known_endings();
-
 }  // namespace pbf::data_module

@@ -18,14 +18,17 @@ const std::vector<LogColumn>& log_columns() {
   return columns;
 }
 
+std::string further_column(const ReadingColumn& c, int component) {
+  return std::string(c.kind) + "/" + c.of + "/" + number_name(c, component);
+}
+
 std::vector<FurtherNumber> further_numbers(const LogRow& row,
                                            const std::vector<ReadingColumn>& columns) {
   std::vector<FurtherNumber> all;
   for (const StageTime& s : row.stages) all.push_back({"stage/" + s.name, "s", s.seconds});
   const auto add = [&](Series series, const std::vector<double>& numbers) {
     for_each_number(columns, series, [&](const ReadingColumn& c, int component, std::size_t k) {
-      all.push_back({std::string(c.kind) + "/" + c.of + "/" + number_name(c, component), c.unit,
-                     numbers.at(k)});
+      all.push_back({further_column(c, component), c.unit, numbers.at(k)});
     });
   };
   add(Series::poses, row.poses);

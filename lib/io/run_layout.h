@@ -56,6 +56,8 @@ struct FurtherNumber {
   const char* unit;
   double value;
 };
+/// "load/post/force_x": the column in the log of a number of a reading.
+std::string further_column(const ReadingColumn& column, int component);
 /// In so many groups below the log.
 inline constexpr int log_groups = 2;
 /// `columns`: of the run's readings.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "lib/io/run_layout.h"
 #include "lib/program/free_bodies.h"
 #include "lib/verify/compare_parts.h"
 
@@ -51,7 +52,7 @@ class ComparedBody {
   void take_logs(const RunReader& a, const RunReader& b, double half) {
     std::vector<std::vector<double>> of_a, of_b;
     for_each_number(columns_, Series::poses, [&](const ReadingColumn& c, int k, std::size_t) {
-      const std::string name = std::string(c.kind) + "/" + c.of + "/" + number_name(c, k);
+      const std::string name = run_layout::further_column(c, k);
       of_a.push_back(a.log_column(name));
       of_b.push_back(b.log_column(name));
     });

@@ -16,15 +16,9 @@ namespace {
 
 /// 9 x 9 x 9 particles of a lattice of `apart` spacings, far from walls, with random velocities.
 Case cloud(double apart, double speed, TimeOrder order) {
-  Case c = here({});
-  c.scene.fluid.spacing = 0.05;
+  Case c = backend_test::drifting(0.004, order);
   c.scene.domain.min = {-2, -2, -2};
   c.scene.domain.max = {2, 2, 2};
-  c.scene.gravity = {0, 0, 0};
-  c.scene.time = {0.004, 1, {}};
-  c.scene.time.order = order;
-  c.scene.solver.iterations = 0;
-  c.scene.solver.prestabilize = false;
   std::mt19937 gen(1);
   for (int k = 0; k < 729; ++k) {
     const double d = apart * c.scene.fluid.spacing;

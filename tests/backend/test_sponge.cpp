@@ -14,16 +14,10 @@ namespace {
 /// Particles along the diagonal of a box, far from each other and from walls, all with one
 /// velocity.
 Case line(TimeOrder order, int substeps = 1) {
-  Case c = here({});
-  c.scene.fluid.spacing = 0.05;
+  Case c = backend_test::drifting(0.01, order);
   c.scene.domain.min = {-1, -2, -3};
   c.scene.domain.max = {3, 2, 1};
-  c.scene.gravity = {0, 0, 0};
-  c.scene.time = {0.01, 1, {}};
-  c.scene.time.order = order;
-  c.scene.solver.iterations = 0;
   c.scene.solver.substeps = substeps;
-  c.scene.solver.prestabilize = false;
   c.scene.solver.hyperviscosity = 0;
   for (int k = 0; k < 12; ++k) {
     c.particles.position.push_back({0.2 * k, 0.3 * k - 1.7, 0.25 * k - 2.6});

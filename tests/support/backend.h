@@ -25,6 +25,18 @@ inline oracle_test::Case here(oracle_test::Case c) {
   return c;
 }
 
+/// A case without particles so far, in which nothing acts on them; `step` in s.
+inline oracle_test::Case drifting(double step, pbf::TimeOrder order) {
+  oracle_test::Case c = here({});
+  c.scene.fluid.spacing = 0.05;
+  c.scene.gravity = {0, 0, 0};
+  c.scene.time = {step, 1, {}};
+  c.scene.time.order = order;
+  c.scene.solver.iterations = 0;
+  c.scene.solver.prestabilize = false;
+  return c;
+}
+
 /// Particles alone: the same after other updates too.
 inline bool same_particles(const pbf::SolverState& a, const pbf::SolverState& b) {
   return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
