@@ -1,6 +1,6 @@
-// Sums over the particles around points, for level and velocity gauges. The sums are integers, so
-// order and threads do not matter. Every particle adds its own terms without cells, so a reading
-// needs no sort.
+// Sums over the particles around points, for gauges of levels, lines and velocities. The sums are
+// integers, so order and threads do not matter. Every particle adds its own terms without cells, so
+// a reading needs no sort.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,14 @@
 
 namespace pbf {
 
-/// A row of points along an axis, in h, in the internal frame.
+/// A row of points along a line, in h, in the internal frame.
 struct Probe {
-  double from[3] = {0, 0, 0};  ///< the first point
-  double step = 1;             ///< spacing of the points
+  static constexpr int inclined = 3;  ///< the axis of a line that has its own direction
+
+  double from[3] = {0, 0, 0};       ///< the first point
+  double step = 1;                  ///< spacing of the points
+  double direction[3] = {0, 0, 0};  ///< unit vector; of inclined lines only
+  double scale = 1;                 ///< 1/h: particles within 1/scale of a point count
   int axis = 2, count = 1;
   int first = 0;        ///< number of its first point among those of all probes
   bool moving = false;  ///< velocities are summed too
@@ -53,20 +57,34 @@ struct ProbePass {
     const Vec4<Real> at = position[i];
     for (int k = 0; k < probes; ++k) {
       const Probe& p = probe[k];
+      if (p.axis == Probe::inclined) {
+        around_line(p, i, at);
+        continue;
+      }
       // Most particles are out of range along the first axis that is tested.
-      const double a = p.axis == 0 ? double(at.y) - p.from[1] : double(at.x) - p.from[0];
+      const double a =
+          p.scale * (p.axis == 0 ? double(at.y) - p.from[1] : double(at.x) - p.from[0]);
       if (a < 1 && a > -1) around(p, i, at, a);
     }
   }
 
  private:
-  /// a: h, distance from the row of points along the first axis across it.
+  PBF_HD void around_line(const Probe& p, int i, const Vec4<Real>& at) const {
+    const double x = double(at.x) - p.from[0], y = double(at.y) - p.from[1],
+                 z = double(at.z) - p.from[2];
+    const double along = x * p.direction[0] + y * p.direction[1] + z * p.direction[2];
+    spread(p, i, x * x + y * y + z * z - along * along, along);
+  }
+  /// a: distance from the row of points along the first axis across it, times scale.
   PBF_HD void around(const Probe& p, int i, const Vec4<Real>& at, double a) const {
-    const double b = p.axis == 2 ? double(at.y) - p.from[1] : double(at.z) - p.from[2];
-    const double along = p.axis == 0   ? double(at.x) - p.from[0]
-                         : p.axis == 1 ? double(at.y) - p.from[1]
-                                       : double(at.z) - p.from[2];
-    const double across = a * a + b * b;
+    const double b = p.scale * (p.axis == 2 ? double(at.y) - p.from[1] : double(at.z) - p.from[2]);
+    const double along = p.scale * (p.axis == 0   ? double(at.x) - p.from[0]
+                                    : p.axis == 1 ? double(at.y) - p.from[1]
+                                                  : double(at.z) - p.from[2]);
+    spread(p, i, a * a + b * b, along);
+  }
+  /// across: squared distance from the line, times scale^2; along: of the foot on it, times scale.
+  PBF_HD void spread(const Probe& p, int i, double across, double along) const {
     // Also true for NaN.
     if (!(across < 1) || !(along > -1) || !(along < p.step * (p.count - 1) + 1)) return;
     const double reach = square_root(1 - across);

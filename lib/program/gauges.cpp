@@ -23,8 +23,10 @@ struct Frame {
   /// In the internal frame.
   void place(const Double3& x, double (&to)[3]) const { put(to, internal_place(s, plan.axes, x)); }
   void direction(const Double3& v, double (&to)[3]) const { put(to, along_internal(plan.axes, v)); }
-  /// Bound on the number of particles within h of a point: those in a cube of edge 2 h.
-  double particles_around() const { return std::pow(2 * s.h() / s.fluid.spacing, s.dimensions); }
+  /// Bound on the number of particles within a radius (m) of a point: those in a cube around it.
+  double particles_around(double radius) const {
+    return std::pow(2 * radius / s.fluid.spacing, s.dimensions);
+  }
 };
 
 /// What a kind makes of the keys of a gauge.
@@ -43,23 +45,15 @@ std::string text(const auto& x) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
 }
 
-constexpr int kPerH = 8;  ///< sample points of a level gauge per h
+constexpr int kPerH = 8;  ///< sample points of a line per h
 
-PlannedGauge<ProbeTally> planned(const gauge_keys::Level& g, const Frame& frame) {
-  PlannedGauge<ProbeTally> gauge;
+/// The gauge of a line whose probe has its place and direction. length: h. connected: up to the
+/// first gap; from the far end, if backward.
+void finish_line(PlannedGauge<ProbeTally>& gauge, const Frame& frame, double length, bool connected,
+                 bool backward) {
   const Scene& s = frame.s;
   const bool flat = s.dimensions == 2;
   Probe& p = gauge.site;
-  Double3 from = s.domain.min;
-  const std::vector<int> across = axes_across_level(s);
-  for (std::size_t k = 0; k < across.size(); ++k) {
-    from[std::size_t(across[k])] = g.at[k];
-    gauge.place += fmt::format("{}{} = {:.6g} m", k ? ", " : "", "xyz"[across[k]], g.at[k]);
-  }
-  frame.place(from, p.from);
-  p.axis = frame.plan.axes.inside(level_axis(s));
-  const auto a = std::size_t(level_axis(s));
-  const double length = (s.domain.max[a] - s.domain.min[a]) / s.h();
   const int pieces = int(std::min(std::ceil(length * kPerH), 1e6));
   p.step = length / pieces;
   p.count = gauge.sums = pieces + 1;
@@ -69,21 +63,46 @@ PlannedGauge<ProbeTally> planned(const gauge_keys::Level& g, const Frame& frame)
   // ProbeSums::weight times this is the volume fraction of fluid.
   const double weight = frame.plan.mass / (s.fluid.rest_density * h * h * third) *
                         (flat ? Poly6<double, 2>::norm : Poly6<double>::norm) / double(kProbeUnits);
-  gauge.grains = {{h * weight * frame.particles_around()}};
+  gauge.grains = {{h * weight * frame.particles_around(h)}};
   gauge.finish = [line = flat ? level_line<2>(p, walls, frame.plan.solids)
                               : level_line<3>(p, walls, frame.plan.solids),
-                  h, weight, step = p.step](const ProbeSums* sums) -> std::vector<double> {
+                  h, weight, connected, backward, step = p.step,
+                  gap = s.fluid.spacing / (h * p.step)](const ProbeSums* sums) {
     const auto above = [&](std::size_t n) {
       return weight * double(sums[n].weight) - 0.5 * line.free_share[n];
     };
-    double wet = 0, here = above(0);
-    for (std::size_t n = 0; n < line.pieces.size(); ++n) {
-      const double next = above(n + 1);
-      wet += wet_part(here, next, line.pieces[n]);
-      here = next;
-    }
-    return {h * (wet * step)};
+    const double wet =
+        connected ? connected_length(line, above, gap, backward) : wet_length(line, above);
+    return std::vector<double>{h * (wet * step)};
   };
+}
+
+PlannedGauge<ProbeTally> planned(const gauge_keys::Level& g, const Frame& frame) {
+  PlannedGauge<ProbeTally> gauge;
+  const Scene& s = frame.s;
+  Double3 from = s.domain.min;
+  const std::vector<int> across = axes_across_level(s);
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    from[std::size_t(across[k])] = g.at[k];
+    gauge.place += fmt::format("{}{} = {:.6g} m", k ? ", " : "", "xyz"[across[k]], g.at[k]);
+  }
+  frame.place(from, gauge.site.from);
+  gauge.site.axis = frame.plan.axes.inside(level_axis(s));
+  const auto a = std::size_t(level_axis(s));
+  finish_line(gauge, frame, (s.domain.max[a] - s.domain.min[a]) / s.h(), g.connected,
+              s.gravity[a] > 0);
+  return gauge;
+}
+
+PlannedGauge<ProbeTally> planned(const gauge_keys::Line& g, const Frame& frame) {
+  PlannedGauge<ProbeTally> gauge{.place = text(g.from) + " to " + text(g.to) + " m"};
+  const Scene& s = frame.s;
+  Double3 from = g.from, to = g.to;
+  if (s.dimensions == 2) from[1] = to[1] = *s.plane();
+  frame.place(from, gauge.site.from);
+  frame.direction(unit(to - from), gauge.site.direction);
+  gauge.site.axis = Probe::inclined;
+  finish_line(gauge, frame, std::sqrt(dot(to - from, to - from)) / s.h(), g.connected, false);
   return gauge;
 }
 
@@ -92,8 +111,10 @@ PlannedGauge<ProbeTally> planned(const gauge_keys::Velocity& g, const Frame& fra
   frame.place({g.at[0], g.at[1], g.at[2]}, gauge.site.from);
   gauge.site.moving = true;
   gauge.site.first = frame.first;
+  const double within = g.within.value_or(frame.s.h());
+  gauge.site.scale = frame.s.h() / within;
   const double unit = frame.s.h() / frame.s.time.step;  // m/s, of h per update
-  gauge.grains = {{unit * frame.particles_around() / double(kProbeUnits)}};
+  gauge.grains = {{unit * frame.particles_around(within) / double(kProbeUnits)}};
   gauge.finish = [unit, axes = frame.plan.axes](const ProbeSums* s) -> std::vector<double> {
     const double weight = double(s->weight);
     if (!(weight / double(kProbeUnits) > 1e-6))

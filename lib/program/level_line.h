@@ -1,4 +1,4 @@
-// Where fluid can be along a level gauge, and how much of it is wet.
+// Where fluid can be along the line of a gauge, and how much of it is wet.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace pbf::program_module {
 
-/// The interval between two sample points of a level gauge.
+/// The interval between two sample points of a line.
 struct LevelPiece {
   double from = 0, to = 1;  ///< the part of it outside of obstacles, as fractions
 };
 
-/// Where fluid can be along a level gauge.
+/// Where fluid can be along a line.
 struct LevelLine {
   std::vector<double> free_share;  ///< at each point, the share of the kernel outside of solids
   std::vector<LevelPiece> pieces;  ///< between the points
@@ -45,7 +45,10 @@ LevelLine level_line(const Probe& p, const Box<double>& walls,
   constexpr Smoothing poly6 = D == 2 ? Smoothing::paper_2d : Smoothing::paper;
   const auto at = [&](double n) {
     double x[3] = {p.from[0], p.from[1], p.from[2]};
-    x[p.axis] += n * p.step;
+    if (p.axis == Probe::inclined)
+      for (int k = 0; k < 3; ++k) x[k] += n * p.step * p.direction[k];
+    else
+      x[p.axis] += n * p.step;
     return Vec3<double>{x[0], x[1], x[2]};
   };
   const auto free = [&](double n) {
@@ -72,15 +75,47 @@ LevelLine level_line(const Probe& p, const Box<double>& walls,
   return line;
 }
 
-/// The fraction of a piece that is wet and outside of obstacles. `a`, `b`: at its two ends, fluid
-/// fraction minus half of the free space; linear between them, wet where positive. So the surface
-/// is where fluid fills half of the free space, also beside walls.
-inline double wet_part(double a, double b, const LevelPiece& free) {
+/// The part of a piece that is wet and outside of obstacles, empty if to <= from. `a`, `b`: at its
+/// two ends, fluid fraction minus half of the free space; linear between them, wet where positive.
+/// So the surface is where fluid fills half of the free space, also beside walls.
+inline LevelPiece wet_part(double a, double b, const LevelPiece& free) {
   double from = 0, to = 1;
-  if (!(a > 0) && !(b > 0)) return 0;
+  if (!(a > 0) && !(b > 0)) return {0, 0};
   if (!(a > 0)) from = a / (a - b);
   if (!(b > 0)) to = a / (a - b);
-  return std::max(std::min(to, free.to) - std::max(from, free.from), 0.0);
+  return {std::max(from, free.from), std::min(to, free.to)};
+}
+
+/// How much of a line is wet, in pieces, whose points have above(n): see wet_part().
+template <class Above>
+double wet_length(const LevelLine& line, const Above& above) {
+  double wet = 0, here = above(0);
+  for (std::size_t n = 0; n < line.pieces.size(); ++n) {
+    const double next = above(n + 1);
+    const LevelPiece part = wet_part(here, next, line.pieces[n]);
+    wet += std::max(part.to - part.from, 0.0);
+    here = next;
+  }
+  return wet;
+}
+
+/// The same up to the first dry stretch outside of obstacles that is longer than `gap` (pieces).
+/// `backward`: from the last point on.
+template <class Above>
+double connected_length(const LevelLine& line, const Above& above, double gap, bool backward) {
+  double wet = 0, dry = 0;
+  const std::size_t count = line.pieces.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t n = backward ? count - 1 - k : k;
+    LevelPiece free = line.pieces[n], part = wet_part(above(n), above(n + 1), free);
+    if (backward) free = {1 - free.to, 1 - free.from}, part = {1 - part.to, 1 - part.from};
+    const double open = std::max(free.to - free.from, 0.0);
+    const double length = std::max(part.to - part.from, 0.0);
+    dry += length > 0 ? part.from - free.from : open;
+    if (dry > gap) break;
+    if (length > 0) wet += length, dry = free.to - part.to;
+  }
+  return wet;
 }
 
 }  // namespace pbf::program_module

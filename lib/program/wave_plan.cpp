@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "lib/scene/waves.h"
+#include "lib/scene/sponge_waves.h"
 
 namespace pbf::program_module {
 namespace {
@@ -72,6 +72,11 @@ std::string waves_of(const Scene& s, const Obstacle& o) {
         "  expected loss of height: about {:.2g} % per wavelength (estimate, fitted to "
         "two-dimensional flumes with levels: on)\n",
         100 * loss);
+  for (const WaveSponge& zone : wave_sponges(s, w))
+    out += fmt::format(
+        "  sponge {}: {:.2g} wavelengths, expected to reflect {:.1g} of the height (linear theory "
+        "of long waves)\n",
+        zone.name, zone.lengths, zone.reflection);
   return out + fmt::format("  the first wave is at the far end at {:.3g} s, and back at {:.3g} s\n",
                            w.arrival(w.ahead) - s.time.motion_begin,
                            w.arrival(2 * w.ahead) - s.time.motion_begin);
@@ -91,6 +96,10 @@ Json wave_json(const Scene& s) {
   for (const Obstacle& o : s.obstacles) {
     if (!o.motion || !makes_waves(*o.motion)) continue;
     const WaveMaker w = wave_maker(s, o);
+    Json sponges = Json::array();
+    for (const WaveSponge& zone : wave_sponges(s, w))
+      sponges.push_back(
+          {{"name", zone.name}, {"lengths", zone.lengths}, {"reflection", zone.reflection}});
     out.push_back({{"name", o.name},
                    {"kind", word_of(o.motion->kind)},
                    {"paddle", w.flap ? "flap" : "piston"},
@@ -108,6 +117,7 @@ Json wave_json(const Scene& s) {
                    {"lines", w.lines.size()},
                    {"steps_per_period", w.period / s.time.step},
                    {"loss_per_length", w.loss(s.fluid.spacing)},
+                   {"sponges", sponges},
                    {"at_end_s", w.arrival(w.ahead) - s.time.motion_begin},
                    {"back_s", w.arrival(2 * w.ahead) - s.time.motion_begin}});
   }

@@ -6,7 +6,7 @@
 #include "lib/base/text.h"
 #include "lib/run/motion_warnings.h"
 #include "lib/run/wave_files.h"
-#include "lib/scene/waves.h"
+#include "lib/scene/sponge_waves.h"
 
 namespace pbf::run_module {
 namespace {
@@ -93,6 +93,24 @@ std::string settings_text(const Scene& s) {
          "and fluid.smoothing_ratio 3, in two dimensions 3.5";
 }
 
+/// Zones before the paddle take its own waves, and short ones reflect.
+std::string sponge_text(const Scene& s, const WaveMaker& w) {
+  std::vector<std::string> texts;
+  for (const WaveSponge& zone : wave_sponges(s, w)) {
+    if (zone.from < 0.5 * w.length())
+      texts.push_back(fmt::format(
+          "the zone {} of damping begins {:.3g} m before it, closer than half a wavelength "
+          "({:.3g} m), and takes the waves as they are made; move it to the far end",
+          zone.name, zone.from, 0.5 * w.length()));
+    else if (zone.lengths < 0.5)
+      texts.push_back(fmt::format(
+          "the zone {} of damping has {:.2g} of a wavelength and reflects about {:.2g} of the "
+          "height; half a wavelength ({:.3g} m) is the least, a whole one is better",
+          zone.name, zone.lengths, zone.reflection, 0.5 * w.length()));
+  }
+  return joined(texts, "\n");
+}
+
 /// Whether something other than a wall may end the waves.
 bool has_end(const Scene& s) {
   return !s.damping.empty() || std::ranges::any_of(s.obstacles, [](const Obstacle& o) {
@@ -113,7 +131,8 @@ std::string returns_text(const Scene& s, const WaveMaker& w) {
 
 std::vector<Warning> wave_warnings(const Scene& s) {
   std::vector<Warning> list{{"wave_breaks", ""}, {"wave_theory", ""},   {"wave_resolution", ""},
-                            {"wave_step", ""},   {"wave_settings", ""}, {"wave_returns", ""}};
+                            {"wave_step", ""},   {"wave_settings", ""}, {"wave_returns", ""},
+                            {"wave_sponge", ""}};
   for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
     const Obstacle& o = s.obstacles[k];
     if (!o.motion || !makes_waves(*o.motion)) continue;
@@ -128,6 +147,7 @@ std::vector<Warning> wave_warnings(const Scene& s) {
     add(3, step_text_of(w, s.time.step));
     if (list[4].text.empty()) add(4, settings_text(s));
     add(5, returns_text(s, w));
+    add(6, sponge_text(s, w));
   }
   return list;
 }

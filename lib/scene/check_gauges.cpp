@@ -56,8 +56,20 @@ class GaugeChecker : public SceneRules {
     inside(g.at, at);
   }
 
+  void check(const gauge_keys::Line& g) {
+    if (!good(g.from, g.to) || !inside(g.from, g.from) || !inside(g.to, g.to)) return;
+    Double3 way = g.to - g.from;
+    if (flat()) way[1] = 0;
+    if (good(s_.fluid.spacing) && !(dot(way, way) >= s_.fluid.spacing * s_.fluid.spacing))
+      add(g.to, "is {} m from `from`, less than fluid.spacing; a line has two ends",
+          rounded(std::sqrt(dot(way, way))));
+  }
+
   void check(const gauge_keys::Velocity& g) {
     if (good(g.at) && is_place(g.at)) inside(g.at, place(g.at));
+    if (good(g.within, s_.fluid.spacing) && g.within && *g.within < s_.fluid.spacing * (1 - 1e-9))
+      add(g.within, "is {}, below fluid.spacing ({} m), where often no particle is; enlarge it",
+          *g.within, s_.fluid.spacing);
   }
 
   void check(const gauge_keys::Flow& g) {

@@ -120,7 +120,13 @@ class PeriodicChecker : public SceneRules {
     for (std::size_t k = 0; good(g.at) && k < std::min(across.size(), g.at.size()); ++k)
       check_place(g.at, std::size_t(across[k]), g.at[k], s_.h());
   }
-  void check(const gauge_keys::Velocity& g, const Gauge&) { check_places(g.at, s_.h()); }
+  void check(const gauge_keys::Line& g, const Gauge&) {
+    for (const Double3* end : {&g.from, &g.to})
+      for (std::size_t a = 0; good(*end) && a < 3; ++a) check_place(*end, a, (*end)[a], s_.h());
+  }
+  void check(const gauge_keys::Velocity& g, const Gauge&) {
+    if (good(g.within)) check_places(g.at, g.within.value_or(s_.h()));
+  }
   void check(const gauge_keys::Pressure& g, const Gauge&) {
     if (good(g.radius)) check_places(g.at, g.radius);
   }
@@ -129,7 +135,7 @@ class PeriodicChecker : public SceneRules {
       check_place(at, a, at[a], reach);
   }
   /// reach: m, of the gauge, which sees no images.
-  void check_place(const std::vector<double>& at, std::size_t a, double x, double reach) {
+  void check_place(const auto& at, std::size_t a, double x, double reach) {
     if (!s_.domain.is_periodic(int(a))) return;
     const double low = s_.domain.min[a] + reach, high = s_.domain.max[a] - reach;
     if (x < low - 1e-9 * reach || x > high + 1e-9 * reach)

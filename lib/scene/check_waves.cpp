@@ -16,6 +16,7 @@ class WaveChecker : public SceneRules {
 
  private:
   static constexpr double kMostLines = 1e5;
+  static constexpr double kMostSines = 2e10;  ///< some minutes
 
   template <class... T>
   bool fail(const auto& member, fmt::format_string<Shown<T>...> text, const T&... values) {
@@ -94,6 +95,13 @@ class WaveChecker : public SceneRules {
       if (!(lines >= 1 && lines <= kMostLines))
         return fail(m.repeat, "makes {} lines in the band, must be 1 to {}; give another",
                     std::max(0.0, lines), kMostLines);
+      const double rows = good(s_.time.end) ? s_.time.end * kRowsPerPeriod * high / m.period : 0;
+      if (lines * rows > kMostSines)
+        return fail(m.repeat,
+                    "makes {} lines, and the motion has {} rows: too many sines to add up. Give "
+                    "{} s or less, after which the sea repeats",
+                    lines, rounded(rows, 3),
+                    std::floor(repeat_of(s_, m) * kMostSines / (lines * rows)));
     }
     return true;
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -37,31 +38,63 @@ inline constexpr const char* kAtHelp =
     "Of a level where the line is along the other axes, [x, y], in two dimensions [x]; else the "
     "place, [x, y, z].";
 
+inline constexpr const char* kConnectedHelp =
+    "Counts only up to the first dry stretch longer than fluid.spacing, which leaves out drops and "
+    "jets. A level is read from the end that gravity points to.";
+
 struct Level {
   using Tally = ProbeTally;
   static constexpr const char* word = "level";
   static constexpr const char* about = "the wetted length of a line along gravity's axis (m)";
   static constexpr std::array columns{GaugeColumn{"", "m", Join::now}};
   std::vector<double> at{};  ///< m, coordinates across the line
+  bool connected = false;
   bool operator==(const Level&) const = default;
 
   static auto keys() {
     return std::tuple{
-        KindKey{&Level::at, "at", "m", kCoordinate, kAtHelp, true, FlatY::none, false, 3}};
+        KindKey{&Level::at, "at", "m", kCoordinate, kAtHelp, true, FlatY::none, false, 3},
+        KindKey{&Level::connected, "connected", "", Range{}, kConnectedHelp, false}};
+  }
+};
+
+struct Line {
+  using Tally = ProbeTally;
+  static constexpr const char* word = "line";
+  static constexpr const char* about =
+      "the wetted length of any line (m), a run-up where it lies along a slope";
+  static constexpr std::array columns{GaugeColumn{"", "m", Join::now}};
+  Double3 from{}, to{};  ///< m
+  bool connected = false;
+  bool operator==(const Line&) const = default;
+
+  static auto keys() {
+    return std::tuple{
+        KindKey{&Line::from, "from", "m", kCoordinate,
+                "Where the line begins. Above a slope leave fluid.spacing or more between them.",
+                true, FlatY::middle},
+        KindKey{&Line::to, "to", "m", kCoordinate, "Where it ends.", true, FlatY::middle},
+        KindKey{&Line::connected, "connected", "", Range{}, kConnectedHelp, false}};
   }
 };
 
 struct Velocity {
   using Tally = ProbeTally;
   static constexpr const char* word = "velocity";
-  static constexpr const char* about = "that of the fluid within h (m/s), nan where there is none";
+  static constexpr const char* about =
+      "that of the fluid around a place (m/s), nan where there is none";
   static constexpr std::array columns{GaugeColumn{"", "m/s", Join::now, 3}};
-  std::vector<double> at{};  ///< m
+  std::vector<double> at{};        ///< m
+  std::optional<double> within{};  ///< m; absent: h
   bool operator==(const Velocity&) const = default;
 
   static auto keys() {
     return std::tuple{
-        KindKey{&Velocity::at, "at", "m", kCoordinate, kAtHelp, true, FlatY::middle, false, 3}};
+        KindKey{&Velocity::at, "at", "m", kCoordinate, kAtHelp, true, FlatY::middle, false, 3},
+        KindKey{&Velocity::within, "within", "m", kLength,
+                "Fluid within this distance counts, with weights that fall to 0 there; at least "
+                "fluid.spacing.",
+                false, FlatY::none, false, 0, false, "the smoothing length h"}};
   }
 };
 
@@ -115,7 +148,7 @@ struct Pressure {
 };
 
 /// The kinds in the order of their words on pages, and their tallies.
-using Any = std::variant<Level, Velocity, Flow, Pressure>;
+using Any = std::variant<Level, Line, Velocity, Flow, Pressure>;
 template <template <class> class Of>
 using EachTally = std::tuple<Of<ProbeTally>, Of<FlowTally>, Of<PatchTally>>;
 

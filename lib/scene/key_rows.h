@@ -152,9 +152,10 @@ Key row_of(const std::string& path, Any Entry::*held, const KindKey<Member, Hold
             standard = {};
             return &(standard.*member);
           }};
-  if constexpr (!std::is_same_v<Member, std::string>) number(key.unit, key.range)(row);
+  if constexpr (!std::is_same_v<Member, std::string> && !std::is_same_v<Member, bool>)
+    number(key.unit, key.range)(row);
   row.most = key.most, row.required = key.required, row.kinds = bit, row.flat = key.flat;
-  row.by_center = key.by_center, row.names_file = key.file;
+  row.by_center = key.by_center, row.names_file = key.file, row.usually = key.usually;
   return row;
 }
 

@@ -45,15 +45,16 @@ struct KindKey {
   const char* help;
   bool required = true;
   FlatY flat = FlatY::none;
-  bool by_center = false;  ///< a corner of a box, which center and size may give as well
-  std::size_t most = 0;    ///< largest length of a list of numbers
-  bool file = false;       ///< the path of a file
+  bool by_center = false;         ///< a corner of a box, which center and size may give as well
+  std::size_t most = 0;           ///< largest length of a list of numbers
+  bool file = false;              ///< the path of a file
+  const char* usually = nullptr;  ///< what an absent number means, in words
 };
 /// clang before version 17 does not deduce the types of aggregates by itself
 /// (tests/regression/fuzz).
 template <class Member, class Holder>
 KindKey(Member Holder::*, const char*, const char*, Range, const char*, bool = true,
-        FlatY = FlatY::none, bool = false, std::size_t = 0, bool = false)
+        FlatY = FlatY::none, bool = false, std::size_t = 0, bool = false, const char* = nullptr)
     -> KindKey<Member, Holder>;
 
 /// Calls f with each kind of a variant, all defaults, in the order of the list.

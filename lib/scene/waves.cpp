@@ -117,7 +117,7 @@ double WaveMaker::elevation(double s, double time) const {
 MotionTable wave_table(const Scene& scene, const Obstacle& o, double most) {
   const WaveMaker w = wave_maker(scene, o);
   const auto rounded = [](double x) { return std::round(1e9 * x) / 1e9; };
-  const double step = w.shortest / 64, from = scene.time.motion_begin - w.start;
+  const double step = w.shortest / kRowsPerPeriod, from = scene.time.motion_begin - w.start;
   const double first = std::floor(from / step) - 1,
                last = std::ceil((from + scene.time.end) / step) + 2;
   MotionTable table;

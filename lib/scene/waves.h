@@ -103,9 +103,11 @@ inline std::string wave_file_name(const std::string& obstacle) {
 /// s, of irregular waves: `repeat`, or what it is by default.
 double repeat_of(const Scene& scene, const Motion& motion);
 
-/// Rows of the motion throughout the run and beyond both its ends, 64 in the shortest period. Their
-/// numbers are multiples of 1e-9 s, m or degrees, so that they do not depend on the last bit of
-/// mathematical functions. `most`: of rows; the table is empty if it takes more.
+/// Rows of a motion in the shortest period.
+inline constexpr double kRowsPerPeriod = 64;
+/// Rows of the motion throughout the run and beyond both its ends, kRowsPerPeriod to the period.
+/// Their numbers are multiples of 1e-9 s, m or degrees, so that they do not depend on the last bit
+/// of mathematical functions. `most`: of rows; the table is empty if it takes more.
 MotionTable wave_table(const Scene& scene, const Obstacle& obstacle, double most = 4e6);
 
 }  // namespace pbf::scene_module

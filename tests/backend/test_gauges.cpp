@@ -150,16 +150,80 @@ TEST_CASE("a level counts what is wet of the line: over a box, under a plate, no
   for (const double l : readings(*make(dry))) CHECK(l == 0);
 }
 
-TEST_CASE("a velocity gauge is the mean of the particles within h, and nan where none is") {
+TEST_CASE("an inclined line is wet up to where it leaves the water") {
   const bool flat = GENERATE(false, true);
+  const std::size_t up = flat ? 2 : std::size_t(GENERATE(0, 2));
+  pbf::Double3 size{0.3, flat ? 0.02 : 0.22, 0.26};
+  size[up] = 0.41;
+  Case c = tank(size, 0.24, up, flat);
+  const std::size_t along = up == 0 ? 2 : 0;
+  const pbf::Double3& low = c.scene.domain.min;
+  for (const double slope : {0.3, 1.0, 3.0}) {
+    pbf::Double3 from = low, to = low;
+    if (!flat) from[1] = low[1] + 0.07, to[1] = low[1] + (up == 1 ? 0.07 : 0.15);
+    // Through the surface in the middle of the tank.
+    const double run = std::min(0.1, 0.15 / slope);
+    from[along] += 0.13 - run, to[along] += 0.13 + run;
+    from[up] += 0.24 - slope * run, to[up] += 0.24 + slope * run;
+    add(c.scene, gauge_keys::Line{from, to});
+    add(c.scene, gauge_keys::Line{to, from});
+    const double length =
+        std::sqrt(4 * run * run * (1 + slope * slope) + (to[1] - from[1]) * (to[1] - from[1]));
+    const std::vector<double> wet = readings(*make(c));
+    const std::size_t n = wet.size();
+    CAPTURE(flat, up, slope);
+    // The surface is a tenth of a spacing off at most, and the line crosses it at an angle.
+    const double allowed = 0.1 * c.scene.fluid.spacing * length / (2 * slope * run);
+    CHECK(wet[n - 2] == Approx(length / 2).margin(allowed));
+    CHECK(wet[n - 1] == Approx(wet[n - 2]).margin(1e-9));
+  }
+}
+
+TEST_CASE("connected lines end at the first gap, from the end that gravity points to") {
+  const bool turned = GENERATE(false, true);
+  Case c = tank({0.3, 0.2, 0.4}, 0.3);
+  const pbf::Double3 low = c.scene.domain.min;
+  const double d = c.scene.fluid.spacing;
+  const auto keep = [&](auto&& wanted) {
+    pbf::Particles kept;
+    for (std::size_t k = 0; k < c.particles.size(); ++k)
+      if (wanted(c.particles.position[k][2] - low[2])) {
+        kept.position.push_back(c.particles.position[k]);
+        kept.velocity.push_back({});
+      }
+    c.particles = kept;
+  };
+  keep([](double z) { return z < 0.12 || (z > 0.2 && z < 0.26); });  // 0.12 and 0.06 m of water
+  if (turned) c.scene.gravity[2] = 9.81;
+  const double x = low[0] + 0.15, y = low[1] + 0.1, top = c.scene.domain.max[2];
+  add(c.scene, gauge_keys::Level{{x, y}});
+  add(c.scene, gauge_keys::Level{{x, y}, true});
+  add(c.scene, gauge_keys::Line{{x, y, low[2]}, {x, y, top}, true});
+  add(c.scene, gauge_keys::Line{{x, y, low[2] + 0.26}, {x, y, low[2]}, true});
+  add(c.scene, gauge_keys::Line{{x, y, low[2] + 0.16}, {x, y, top}, true});  // begins in the gap
+  const std::vector<double> r = readings(*make(c));
+  CHECK(r[0] == Approx(0.18).margin(0.3 * d));
+  CHECK(r[1] == Approx(turned ? 0 : 0.12).margin(turned ? 0 : 0.1 * d));
+  CHECK(r[2] == Approx(0.12).margin(0.1 * d));
+  CHECK(r[3] == Approx(0.06).margin(0.2 * d));
+  CHECK(r[4] == 0);
+}
+
+TEST_CASE("a velocity gauge is the mean of the particles within a radius, nan where none is") {
+  const bool flat = GENERATE(false, true);
+  const double share = GENERATE(1.0, 0.7, 1.4);  // of h
   Case c = here(flat ? flat_block(12, 12, 0.2, 2) : jittered_block(8, 8, 8, 0.2, 2));
   const pbf::Double3 low = c.scene.domain.min;
-  const double h = c.scene.h();
+  const double h = share * c.scene.h();
   std::vector<pbf::Double3> places;
   for (const double a : {0.02, 0.07, 0.11})
     places.push_back({low[0] + a, flat ? *c.scene.plane() : low[1] + 0.08, low[2] + 0.09});
   places.push_back({low[0] + 0.02, low[1], c.scene.domain.max[2]});  // dry
-  for (const pbf::Double3& p : places) add(c.scene, gauge_keys::Velocity{list(p)});
+  for (const pbf::Double3& p : places) {
+    gauge_keys::Velocity gauge{list(p)};
+    if (share != 1) gauge.within = h;
+    add(c.scene, gauge);
+  }
   auto solver = make(c);
   solver->step(3);
   const auto snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();

@@ -42,7 +42,11 @@ class Gauge:
         {'x': 0.7, 'y': 0.1}
         >>> Gauge("U", "velocity", "(0.2, 0.1, 1e-05) m", "m/s", np.array([]), np.array([])).at
         {'x': 0.2, 'y': 0.1, 'z': 1e-05}
+        >>> Gauge("R", "line", "(0, 0.1, 0) to (1, 0.1, 1) m", "m", np.array([]), np.array([])).at
+        {}
         """
+        if " to " in self.place:  # a line
+            return {}
         said = re.findall(r"([xyz]) = ([^ ,]+) m", self.place)
         point = re.search(r"\(([^)]*)\) m", self.place)
         if not said and point:

@@ -88,6 +88,23 @@ TEST_CASE("wave_returns: the time at which waves are back is told unless somethi
   CHECK(told("wave_returns", kRegular, {"time.end=12", zone}).empty());
 }
 
+TEST_CASE("wave_sponge: a zone at the paddle, and one that is too short to end waves, are told") {
+  const auto zone = [](const char* from, const char* rest = "") {
+    return told("wave_sponge", kRegular,
+                {std::string("damping=[{name: end, min: [") + from + ", 0, 0], max: [8, 1, 1]" +
+                 rest + "}]"});
+  };
+  CHECK(zone("4.5").empty());  // a wave of 3.26 m
+  CHECK(contains(zone("6.6"),
+                 "obstacles[0] (paddle): the zone end of damping has 0.43 of a wavelength and "
+                 "reflects about 0."));
+  CHECK(contains(zone("6.6"), "half a wavelength (1.63 m) is the least"));
+  CHECK(contains(zone("1"), "the zone end of damping begins "));
+  CHECK(contains(zone("1"), "closer than half a wavelength (1.63 m)"));
+  CHECK(zone("1", ", toward: x_min").empty());
+  CHECK(zone("6.6", ", axes: [z]").empty());
+}
+
 TEST_CASE("waves_NAME.csv: as a table of a file it is the same motion, and has the gauges' waves") {
   const test::TemporaryFolder folder;
   for (const std::string& motion :

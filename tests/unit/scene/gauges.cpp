@@ -39,12 +39,20 @@ TEST_CASE("gauges: every kind with its keys is read") {
                         "  - {name: Q, kind: flow, center: [0.5, 0.5, 0.1], normal: [1, 0, 0],\n"
                         "     size: [1, 0.2]}\n"
                         "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n"
+                        "  - {name: R, kind: line, from: [0, 0.5, 0], to: [1, 0.5, 1],\n"
+                        "     connected: true}\n"
+                        "  - {name: V, kind: velocity, at: [0.5, 0.5, 0.1], within: 0.16}\n"
                         "output: {gauges_every: 0.05}\n");
-  REQUIRE(s.gauges.size() == 4);
+  REQUIRE(s.gauges.size() == 6);
   CHECK(level_of(s).at == std::vector<double>{0.5, 0.25});
   CHECK(std::get<gauge_keys::Velocity>(s.gauges[1].kind).at == std::vector<double>{0.5, 0.5, 0.1});
   CHECK(std::get<gauge_keys::Flow>(s.gauges[2].kind).size == std::vector<double>{1, 0.2});
   CHECK(std::get<gauge_keys::Pressure>(s.gauges[3].kind).on == "x_max");
+  CHECK(std::get<gauge_keys::Line>(s.gauges[4].kind) ==
+        gauge_keys::Line{{0, 0.5, 0}, {1, 0.5, 1}, true});
+  CHECK(std::get<gauge_keys::Velocity>(s.gauges[5].kind).within == 0.16);
+  CHECK_FALSE(std::get<gauge_keys::Velocity>(s.gauges[1].kind).within);
+  CHECK_FALSE(level_of(s).connected);
   CHECK(s.output->gauges_every == 0.05);
   CHECK(parse(kMinimal).gauges.empty());
   CHECK_FALSE(parse(kMinimal + "output: {}\n").output->gauges_every);
@@ -94,6 +102,26 @@ TEST_CASE("gauges: places have as many numbers as their kind needs, and lie in t
                  "gauges[0].at: has 2 numbers, expected a place, [x, y, z]"));
   CHECK(contains(gauge_error("{name: a, kind: velocity, at: [0.1, 0.1, -0.1]}"),
                  "z is -0.1, outside the domain"));
+}
+
+TEST_CASE("gauges: a line has two ends in the domain, and a velocity enough room for particles") {
+  const auto line = [](const std::string& rest, const std::vector<std::string>& set = {}) {
+    return gauge_error("{name: a, kind: line, " + rest + "}", set);
+  };
+  CHECK(line("from: [0, 0.5, 0], to: [1, 0.5, 1], connected: true") == "no error");
+  CHECK(line("from: [0, 0], to: [1, 1]", kFlat) == "no error");
+  CHECK(contains(line("from: [0, 0.5, 0]"), "gauges[0].to: missing"));
+  CHECK(contains(line("from: [0, 0.5, 0], to: [1, 0.5, 1.2]"),
+                 "gauges[0].to: z is 1.2, outside the domain (z from 0 to 1 m); move the gauge"));
+  CHECK(contains(line("from: [0.2, 0.5, 0.3], to: [0.2, 0.5, 0.3]"),
+                 "gauges[0].to: is 0 m from `from`, less than fluid.spacing; a line has two ends"));
+  CHECK(contains(line("from: [0.2, 0, 0.3], to: [0.2, 0.1, 0.3]", kFlat), "is 0 m from `from`"));
+  CHECK(contains(line("at: [0.2, 0.5]"), "gauges[0].at"));
+  CHECK(contains(gauge_error("{name: a, kind: velocity, at: [0.1, 0.1, 0.1], within: 0.09}"),
+                 "gauges[0].within: is 0.09, below fluid.spacing (0.1 m), where often no particle "
+                 "is; enlarge it"));
+  CHECK(contains(gauge_error("{name: a, kind: level, at: [0.1, 0.1], connected: 2}"),
+                 "gauges[0].connected"));
 }
 
 TEST_CASE("gauges: rectangles without extent or direction are refused") {

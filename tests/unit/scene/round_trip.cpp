@@ -301,12 +301,14 @@ TEST_CASE("table of keys: every default lies in its own range") {
     Emitter emitter;
     Comparison comparison;
     Sponge sponge;
+    scene_module::Gauge gauge;
     Node node;
     const Block* list = key.block->list_around();
     const bool of_body = list && list->path == "bodies[]", of_scene = !list,
                of_emitter = list && list->path == "emitters[]",
                of_comparison = list && list->path == "compare[]",
-               of_sponge = list && list->path == "damping[]";
+               of_sponge = list && list->path == "damping[]",
+               of_gauge = list && list->path == "gauges[]";
     const std::string text = value_text(key, of_scene ? object(defaults) : key.standard);
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
@@ -318,6 +320,7 @@ TEST_CASE("table of keys: every default lies in its own range") {
                                : of_emitter    ? object(emitter)
                                : of_comparison ? object(comparison)
                                : of_sponge     ? object(sponge)
+                               : of_gauge      ? object(gauge)
                                                : object(obstacle)))
               .empty());
   }

@@ -1,5 +1,9 @@
 // What a scene may say of sponges, and every error about them with its remedy.
 #include "lib/scene/sponge.h"
+
+#include <complex>
+
+#include "lib/scene/sponge_waves.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -31,6 +35,24 @@ TEST_CASE("a sponge without a rate has that of the period of what oscillates") {
   const Scene given = parse(kMinimal, {"damping=[" + zone(", rate: 7, axes: [x, z]") + "]"});
   CHECK(sponge_rate(given, given.damping[0]) == 7);
   CHECK_FALSE(damps(given.damping[0], 1));
+}
+
+TEST_CASE("a sponge reflects what linear theory of long waves says") {
+  // Of a constant rate in closed form: e = cosh(g y), u = (i w/g) sinh(g y), y from the wall.
+  for (const double rate : {0.0, 1.0, 8.0, 60.0})
+    for (const double lengths : {0.1, 0.5, 1.7}) {
+      const std::complex<double> iw(0, 2 * 3.14159265358979323846),
+          g = std::sqrt(iw * (iw + rate)), e = std::cosh(g * lengths),
+          u = iw / g * std::sinh(g * lengths);
+      CAPTURE(rate, lengths);
+      CHECK(sponge_reflection(lengths, rate, 0) ==
+            Approx(std::abs(e - u) / std::abs(e + u)).margin(1e-6));
+    }
+  // Quadratic ones of 0.5 to 2 wavelengths.
+  const double known[][2] = {{0.5, 0.05}, {0.75, 0.08}, {1, 0.02}, {1.5, 0.001}, {2, 0.002}};
+  for (const auto& [lengths, share] : known)
+    CHECK(sponge_reflection(lengths, 15, 2) == Approx(share).margin(0.005));
+  CHECK(sponge_reflection(0, 15, 2) == 1);
 }
 
 TEST_CASE("each mistake in a sponge is named with its remedy") {
