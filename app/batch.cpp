@@ -131,7 +131,9 @@ class Batch {
   }
 
   int finish() {
-    const BatchSummary summary = batch_summary(members_, ends_, out_);
+    const BatchSummary summary = batch_summary(
+        members_, ends_, out_, [this](const BatchMember& m) { return loaded(m).scene; });
+    if (!summary.note.empty()) log_.note("pbf: " + summary.note);
     write_text_file(out_ + "/summary.csv", summary.csv(), Naming::own);
     write_text_file(out_ + "/summary.json", summary.json(), Naming::own);
     std::size_t finished = 0, failed = 0;
@@ -149,26 +151,29 @@ class Batch {
   }
 
  private:
+  LoadedScene loaded(const BatchMember& m) const {
+    std::vector<std::string> overrides = o_.overrides;
+    overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
+    return load_scene_or_run(m.scene, overrides, o_.base_folder);
+  }
   /// The result that a run with DONE would have if it were started again.
   JobEnd end_of(const BatchMember& m) const {
     const std::string folder = out_ + "/" + m.name;
-    std::vector<std::string> overrides = o_.overrides;
-    overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
     try {
-      const LoadedScene loaded = load_scene_or_run(m.scene, overrides, o_.base_folder);
+      const LoadedScene own = loaded(m);
       const LoadedScene record = load_stored_scene(folder + "/" + kResolvedScene);
-      const StartPoints points(loaded.scene, loaded.folder);
-      const std::string other = difference_of_runs(record.scene, recorded_files(record.text),
-                                                   loaded.scene, points.files());
+      const StartPoints points(own.scene, own.folder);
+      const std::string other =
+          difference_of_runs(record.scene, recorded_files(record.text), own.scene, points.files());
       if (!other.empty())
         throw Error(ExitCode::bad_input, folder + " is of another scene: " + other + kOther);
-      const std::string file = difference_of_file(folder, loaded.scene);
+      const std::string file = difference_of_file(folder, own.scene);
       if (!file.empty())
         throw Error(ExitCode::bad_input,
                     folder + "/run.vtkhdf is of another scene: " + file + kOther);
-      const std::string doubt = why_not_finished(folder, loaded.scene);
+      const std::string doubt = why_not_finished(folder, own.scene);
       if (!doubt.empty()) throw Error(ExitCode::resumable, "DONE is there, but " + doubt);
-      if (make_schedule(loaded.scene).updates > make_schedule(record.scene).updates)
+      if (make_schedule(own.scene).updates > make_schedule(record.scene).updates)
         throw Error(ExitCode::resumable, "time.end has grown");
     } catch (const Error& e) {
       return {static_cast<int>(e.code()), e.what()};

@@ -13,6 +13,7 @@ void add_plan(CLI::App& app, int& code);
 void add_render(CLI::App& app, int& code);
 void add_compare(CLI::App& app, int& code);
 void add_compare_data(CLI::App& app, int& code);
+void add_probe(CLI::App& app, int& code);
 void add_config(CLI::App& app, int& code);
 void add_bench(CLI::App& app, int& code);
 void add_study(CLI::App& app, int& code);

@@ -48,8 +48,8 @@ int run_main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kExitCodes);
   int code = 0;
-  for (const auto add : {add_run, add_plan, add_render, add_compare, add_compare_data, add_config,
-                         add_bench, add_study, add_batch, add_stability, add_info})
+  for (const auto add : {add_run, add_plan, add_render, add_compare, add_compare_data, add_probe,
+                         add_config, add_bench, add_study, add_batch, add_stability, add_info})
     add(app, code);
   try {
     const std::vector<const char*> words = words_of_line(argc, argv);

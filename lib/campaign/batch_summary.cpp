@@ -1,20 +1,25 @@
 #include "lib/campaign/batch_summary.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
 #include <set>
+#include <utility>
 
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/data/comparison.h"
+#include "lib/data/summary.h"
 #include "lib/io/run_file.h"
 #include "lib/io/table.h"
 #include "lib/scene/keys.h"
+#include "lib/scene/load.h"
 #include "lib/scene/number.h"
 #include "lib/solver/diagnostics.h"
 
@@ -69,13 +74,62 @@ std::string unit_of_key(const std::string& key) {
 
 constexpr const char* kOfFile[] = {"particles", "frames", "warnings", "seconds"};
 
+/// A column that not every run has.
+struct NamedNumber {
+  std::string name, unit;
+  double value = 0;  ///< NaN: there is none
+};
+
 /// What a run file says: last measurements, numbers of particles, frames and warnings, seconds, as
-/// empty cells if there is no file; and comparisons with measurements.
+/// empty cells if there is no file; gauges and loads; comparisons with measurements.
 struct Results {
   std::vector<Cell> cells;
-  std::vector<StoredComparison> compared;
+  std::vector<NamedNumber> readings, compared;
+  bool named = false;     ///< its scene says which readings
+  bool too_many = false;  ///< it does not, and they are too many
 };
-Results read_results(const std::string& path) {
+
+/// "compare/H2/rms"
+std::vector<NamedNumber> compared_in(const RunReader& file) {
+  std::vector<NamedNumber> all;
+  for (const StoredComparison& c : file.comparisons()) {
+    std::map<std::string, StoredComparison::Number> numbers;
+    for (const StoredComparison::Number& n : c.numbers) numbers[n.name] = n;
+    for (const std::string& name : comparison_numbers())
+      if (numbers.contains(name))
+        all.push_back({"compare/" + c.name + "/" + name, numbers[name].unit, numbers[name].value});
+  }
+  return all;
+}
+
+/// The scene of a member as it is now, or else that of its run; none: of an earlier version.
+std::optional<Scene> scene_of(const SceneOfMember& now, const BatchMember& m,
+                              const RunReader& file) {
+  try {
+    return now(m);
+  } catch (const Error&) {
+  }
+  try {
+    return parse_stored_scene(file.info().resolved_scene, m.name, {});
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// Gauges and loads.
+void read_readings(const RunReader& file, const std::optional<Scene>& scene, Results& out) {
+  if (!scene) return;
+  const std::vector<SummaryColumn> columns = wanted_summary_columns(*scene);
+  const std::vector<double> values = summary_numbers(file, columns, scene->summary_from);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    out.readings.push_back({columns[k].name, columns[k].unit, values[k]});
+  out.named = !scene->summary.empty();
+  out.too_many = columns.empty() && !summary_columns(*scene).empty();
+}
+
+Results read_results(const BatchMember& m, const std::string& out_folder,
+                     const SceneOfMember& now) {
+  const std::string path = out_folder + "/" + m.name + "/" + kRunFile;
   const std::vector<std::string> names = last_values();
   Results out;
   std::vector<Cell>& cells = out.cells;
@@ -95,39 +149,48 @@ Results read_results(const std::string& path) {
         if (name.rfind("stage/", 0) == 0)
           for (const double s : file.log_column(name)) seconds += s;
       cells.back() = seconds;
-      out.compared = file.comparisons();
+      out.compared = compared_in(file);
+      read_readings(file, scene_of(now, m, file), out);
     } catch (const Error&) {
       cells.assign(cells.size(), Cell{});  // the message of the run tells what is wrong
     }
   return out;
 }
 
-/// "compare/H2/rms", with its unit, of all runs in the order of first appearance.
-class ComparedColumns {
+/// Columns of all runs in the order of first appearance.
+class NamedColumns {
  public:
-  explicit ComparedColumns(const std::vector<Results>& all) {
-    for (const Results& r : all)
-      for (const StoredComparison& c : r.compared)
-        for (const std::string& number : comparison_numbers())
-          if (!std::isnan(number_of(c, number)) && seen_.insert(column(c, number)).second)
-            names_.push_back(column(c, number));
+  void take(const std::vector<NamedNumber>& numbers, bool without_number) {
+    for (const NamedNumber& n : numbers)
+      if ((without_number || !std::isnan(n.value)) && units_.try_emplace(n.name, n.unit).second)
+        names_.push_back(n.name);
   }
   const std::vector<std::string>& names() const { return names_; }
-  void add(const Results& r, std::vector<Cell>& row) const {
+  const std::map<std::string, std::string>& units() const { return units_; }
+  void add(const std::vector<NamedNumber>& numbers, std::vector<Cell>& row) const {
     std::map<std::string, double> values;
-    for (const StoredComparison& c : r.compared)
-      for (const StoredComparison::Number& n : c.numbers) values[column(c, n.name)] = n.value;
+    for (const NamedNumber& n : numbers) values[n.name] = n.value;
     for (const std::string& name : names_)
       row.push_back(values.contains(name) ? known(values[name]) : Cell{});
-  }
-  static std::string column(const StoredComparison& c, const std::string& number) {
-    return "compare/" + c.name + "/" + number;
   }
 
  private:
   std::vector<std::string> names_;
-  std::set<std::string> seen_;
+  std::map<std::string, std::string> units_;
 };
+
+/// Those of gauges and loads: where all would be too many, of the runs that name theirs.
+NamedColumns reading_columns_of(const std::vector<Results>& results, bool& too_many) {
+  NamedColumns all, named;
+  for (const Results& r : results) {
+    all.take(r.readings, true);
+    if (r.named) named.take(r.readings, true);
+  }
+  const bool more =
+      all.names().size() > kMostSummaryColumns && named.names().size() < all.names().size();
+  too_many = more || std::ranges::any_of(results, &Results::too_many);
+  return more ? named : all;
+}
 
 }  // namespace
 
@@ -147,7 +210,8 @@ std::string exit_reason(int code) {
 }
 
 BatchSummary batch_summary(const std::vector<BatchMember>& members,
-                           const std::map<std::string, JobEnd>& ends, const std::string& out) {
+                           const std::map<std::string, JobEnd>& ends, const std::string& out,
+                           const SceneOfMember& scene_now) {
   const std::vector<std::string> keys = set_keys(members);
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
   const std::vector<std::string> names = last_values();
@@ -162,14 +226,15 @@ BatchSummary batch_summary(const std::vector<BatchMember>& members,
   }
   columns.insert(columns.begin() + 3, of_keys.begin(), of_keys.end());
   std::vector<Results> results;
-  for (const BatchMember& m : members)
-    results.push_back(read_results(out + "/" + m.name + "/" + kRunFile));
-  const ComparedColumns compared(results);
-  columns.insert(columns.end(), compared.names().begin(), compared.names().end());
-  for (const Results& r : results)
-    for (const StoredComparison& c : r.compared)
-      for (const StoredComparison::Number& n : c.numbers)
-        units[ComparedColumns::column(c, n.name)] = n.unit;
+  for (const BatchMember& m : members) results.push_back(read_results(m, out, scene_now));
+  bool too_many = false;
+  const NamedColumns readings = reading_columns_of(results, too_many);
+  NamedColumns compared;
+  for (const Results& r : results) compared.take(r.compared, false);
+  for (const NamedColumns* more : {&readings, &std::as_const(compared)}) {
+    columns.insert(columns.end(), more->names().begin(), more->names().end());
+    units.insert(more->units().begin(), more->units().end());
+  }
   Table table(columns);
   for (std::size_t k = 0; k < members.size(); ++k) {
     const BatchMember& m = members[k];
@@ -179,10 +244,16 @@ BatchSummary batch_summary(const std::vector<BatchMember>& members,
     row.insert(row.end(), {end.code < 0 ? Cell{} : Cell{std::int64_t{end.code}},
                            exit_reason(end.code), end.message});
     row.insert(row.end(), results[k].cells.begin(), results[k].cells.end());
-    compared.add(results[k], row);
+    readings.add(results[k].readings, row);
+    compared.add(results[k].compared, row);
     table.add(row);
   }
-  BatchSummary summary{table, {}};
+  BatchSummary summary{table, {}, {}};
+  if (too_many)
+    summary.note = fmt::format(
+        "gauges and loads would be more than {} columns of summary.csv, and only those are there "
+        "that scenes name in their key summary",
+        kMostSummaryColumns);
   for (const std::string& c : columns)
     if (const std::string& unit = units[c]; !unit.empty() && unit != "1")
       summary.units.emplace_back(c, unit);

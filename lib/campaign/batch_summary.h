@@ -1,6 +1,7 @@
 // The table of `pbf batch`: one row per run, from the contents of its folder.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/io/table.h"
+#include "lib/scene/scene.h"
 
 namespace pbf::campaign_module {
 
@@ -20,17 +22,23 @@ std::string exit_reason(int code);
 /// settings; one column per key that the list or the grid sets, empty if a run uses the value of
 /// its scene ("set.name" if the key has the name of another column); exit code, reason and message;
 /// from the run file, if any, the last row of the log (time, update, compression, energies, ...)
-/// and the numbers of particles, frames and warnings; comparisons with measurements that some run
-/// has ("compare/H2/rms"); `seconds` of all updates with their output,
-/// the only column that depends on the machine.
+/// and the numbers of particles, frames and warnings; `seconds` of all updates with their output,
+/// the only column that depends on the machine; gauges and loads (lib/scene/summary.h); comparisons
+/// with measurements that some run has ("compare/H2/rms").
 struct BatchSummary {
   Table table;
   std::vector<std::pair<std::string, std::string>> units;  ///< of columns that have one
+  std::string note;  ///< what is left out of it, and the remedy; empty: nothing
   std::string csv() const;
   /// {"version", "units": {column: unit}, "rows": [{column: value}]}
   std::string json() const;
 };
+/// The scene of a member as it is now. Throws Error.
+using SceneOfMember = std::function<Scene(const BatchMember&)>;
+/// scene_now: says which numbers of gauges and loads are wanted; where it throws, the scene of the
+/// run does.
 BatchSummary batch_summary(const std::vector<BatchMember>& members,
-                           const std::map<std::string, JobEnd>& ends, const std::string& out);
+                           const std::map<std::string, JobEnd>& ends, const std::string& out,
+                           const SceneOfMember& scene_now);
 
 }  // namespace pbf::campaign_module

@@ -19,6 +19,7 @@ std::string without_step(Scene s) {
   s.measure_every = 1;
   s.output.reset();
   s.compare.clear();
+  s.summary.clear(), s.summary_from = 0;
   s.render.reset();
   s.checkpoint.reset();
   return resolved_yaml(s);

@@ -92,7 +92,8 @@ std::string member_key(const Study& study, const StudyMember& m) {
   static const std::string program = program_text();
   Scene scene = m.scene;
   scene.name.clear();
-  scene.compare.clear();  // what is compared changes no result
+  scene.compare.clear();  // what is compared and summed up changes no result
+  scene.summary.clear(), scene.summary_from = 0;
   read_linked_files(scene, study.scene_dir);
   const Json key{"3",  // version of the format below
                  program,

@@ -8,20 +8,6 @@
 #include "lib/program/plan.h"
 
 namespace pbf::program_module {
-namespace {
-
-/// The surfaces (surface_named()) whose loads are read.
-std::vector<int> loaded_surfaces(const Scene& s) {
-  std::vector<int> all;
-  for (int face = 0; s.domain.loads && face < int(kFaceNames.size()); ++face)
-    if (s.domain.has_wall(face / 2, face % 2 == 1) && !(s.dimensions == 2 && face / 2 == 1))
-      all.push_back(face);
-  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
-    if (s.obstacles[k].loads) all.push_back(int(kFaceNames.size() + k));
-  return all;
-}
-
-}  // namespace
 
 double load_grain(const Scene& s, const Plan& plan) {
   const double dt = s.time.step / plan.substeps;

@@ -37,6 +37,7 @@ class Checker : public SceneRules {
     check_viscosity(p_, problems_);
     check_sponges(p_, problems_);
     check_compare(p_, problems_);
+    check_summary(p_, problems_);
     check_time();
     check_solver();
     if (domain) check_rounding();

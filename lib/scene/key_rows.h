@@ -45,7 +45,7 @@ inline auto number(const char* unit, Range range) {
 inline auto one_of(std::vector<std::string> words) {
   return [=](Key& row) { row.choices = words; };
 }
-/// A switch, or text.
+/// A switch, text, or a list of names.
 inline void plain(Key&) {}
 inline void required(Key& row) { row.required = true; }
 inline void automatic(Key& row) { row.automatic = true; }

@@ -65,7 +65,7 @@ struct Key {
   std::string unit{};  ///< "m"; empty: not a number, or dimensionless (texts show "1")
   Range range{};
   std::size_t most = 0;                ///< largest length of a list of numbers; 0: no such list
-  std::vector<std::string> choices{};  ///< allowed words (ChoiceField), or elements of a list
+  std::vector<std::string> choices{};  ///< allowed words, or elements of a list; empty: any
   bool required = false;
   bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number
   bool is_kind = false;    ///< its word decides which other keys a block or an entry has

@@ -23,6 +23,14 @@ KeyRows run_rows() {
        {"render.camera", "The camera of the pictures."}},
       {key(KEY(measure_every), number("", {1, 2147483647}),
            "Updates between two measurements (density error, energy, momentum, ...)."),
+       key(KEY(summary_from), number("s", {0, 1e9}),
+           "Readings of gauges and loads before this time do not count in summary.csv of a batch.",
+           effect(Effect::none), exact(kNoPhysics)),
+       key(KEY(summary), plain,
+           "Columns of gauges and loads in summary.csv of a batch: gauge/H/max, gauge/U/x/mean, "
+           "load/post/force_x/max_20ms, load/post/force_x/mean, load/post/impulse_x. Empty: all, "
+           "where they are 200 at most.",
+           effect(Effect::none)),
        key(KEY(guard->speed), number("m/s", {0, 1e30, true}),
            "Fastest speed allowed, in any update. auto: 10 times the sum of the fastest speed at "
            "the start, that of a fall through the domain, and h per update. With "

@@ -246,7 +246,9 @@ struct Scene {
   std::optional<Tensile> tensile;
   std::optional<Viscosity> viscosity;
   std::optional<Vorticity> vorticity;
-  int measure_every = 10;  ///< updates between measurements
+  int measure_every = 10;   ///< updates between measurements
+  double summary_from = 0;  ///< s, what a batch's summary says of gauges and loads begins there
+  std::vector<std::string> summary;  ///< its columns of them (summary.h); empty: all
   std::optional<GuardSettings> guard = GuardSettings{};
   std::optional<Output> output;
   std::optional<Checkpoint> checkpoint;

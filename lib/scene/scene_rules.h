@@ -133,5 +133,6 @@ void check_periodic(const PlacedScene& placed, Problems& problems);
 void check_viscosity(const PlacedScene& placed, Problems& problems);
 void check_sponges(const PlacedScene& placed, Problems& problems);
 void check_compare(const PlacedScene& placed, Problems& problems);
+void check_summary(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::scene_module

@@ -51,7 +51,10 @@ struct TypeSchema {
     return {{"type", "string"}, {"minLength", may_be_empty(key) ? 0 : 1}};
   }
   Json operator()(const std::vector<std::string>*) const {
-    return {{"type", "array"}, {"uniqueItems", true}, {"items", enumeration(key.choices)}};
+    const Json free{{"type", "string"}, {"minLength", 1}};
+    return {{"type", "array"},
+            {"uniqueItems", true},
+            {"items", key.choices.empty() ? free : enumeration(key.choices)}};
   }
   Json operator()(const std::vector<double>*) const {
     Json list = list_schema(key, false, 1);

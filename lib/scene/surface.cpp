@@ -74,6 +74,16 @@ const Obstacle* obstacle_of(const Scene& scene, int surface) {
   return std::size_t(surface) < kFaceNames.size() ? nullptr : &scene.obstacles[k];
 }
 
+std::vector<int> loaded_surfaces(const Scene& s) {
+  std::vector<int> all;
+  for (int face = 0; s.domain.loads && face < int(kFaceNames.size()); ++face)
+    if (s.domain.has_wall(face / 2, face % 2 == 1) && !(s.dimensions == 2 && face / 2 == 1))
+      all.push_back(face);
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (s.obstacles[k].loads) all.push_back(int(kFaceNames.size() + k));
+  return all;
+}
+
 bool has_pressure_on_wall(const Scene& scene) {
   return std::ranges::any_of(scene.gauges, [](const Gauge& g) {
     const auto* keys = std::get_if<gauge_keys::Pressure>(&g.kind);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
@@ -33,6 +34,8 @@ bool is_bent(const Obstacle& obstacle);
 std::optional<int> surface_named(const Scene& scene, const std::string& name);
 /// Null for a face.
 const Obstacle* obstacle_of(const Scene& scene, int surface);
+/// The surfaces whose loads are recorded.
+std::vector<int> loaded_surfaces(const Scene& scene);
 /// Whether the scene has a pressure gauge on a wall of the domain.
 bool has_pressure_on_wall(const Scene& scene);
 SurfacePlace nearest_place_on(int surface, const Scene& scene, const Double3& at);

@@ -99,12 +99,15 @@ std::string read_words(const Key& key, const Node& node, std::vector<std::string
   if (node.kind != Node::Kind::list) {
     const std::string near =
         node.kind == Node::Kind::scalar ? nearest_choice(node.text, key.choices) : std::string();
+    if (key.choices.empty()) return instead_of("a list of names in brackets", node);
     return instead_of("a list of words such as [" + (near.empty() ? key.choices[0] : near) + "]",
                       node);
   }
   std::vector<std::string> words;
   for (const Node& item : node.items) {
-    if (choice_of(key, item) < 0) return not_among(key.choices, item);
+    if (key.choices.empty() && (item.kind != Node::Kind::scalar || item.text.empty()))
+      return instead_of("a name", item);
+    if (!key.choices.empty() && choice_of(key, item) < 0) return not_among(key.choices, item);
     if (std::find(words.begin(), words.end(), item.text) != words.end())
       return item.shown() + " is listed twice";
     words.push_back(item.text);
@@ -190,7 +193,10 @@ struct ValueWriter {
   }
   std::string operator()(const std::string* field) const { return yaml_text(*field); }
   std::string operator()(const std::vector<std::string>* field) const {
-    return std::string("[").append(joined(*field, ", ")).append("]");
+    std::vector<std::string> words = *field;
+    for (std::string& word : words)
+      if (key.choices.empty()) word = yaml_text(word);
+    return std::string("[").append(joined(words, ", ")).append("]");
   }
   std::string operator()(const std::vector<double>* field) const {
     std::string text = "[";

@@ -90,7 +90,18 @@ def test_the_summary_of_a_batch_has_the_columns_of_the_page(written):
     written("batch", "s.yaml", "--grid", "solver.iterations=1,2", "--out", "batch", "--quiet")
     columns = header(written.folder / "batch/summary.csv")
     assert columns.pop(3) == "solver.iterations"
-    assert columns == first_cells(section("Summary of a batch"))
+    assert [c for c in columns if "/" not in c] == first_cells(section("Summary of a batch"))
+    said = re.findall(r"`(load/\S+)`", section("Summary of a batch").partition("\nThe units")[0])
+    assert [c for c in columns if "/" in c][:3] == [c.replace("NAME", "post") for c in said]
+
+
+def test_a_probe_has_the_columns_of_the_page(written):
+    (written.folder / "more.yaml").write_text(
+        "gauges: [{name: H, kind: level, at: [0.1, 0.1]}, {name: U, kind: velocity, at: [0.1, 0.1, "
+        "0.1]},\n  {name: Q, kind: flow, center: [0.3, 0.2, 0.2], normal: [1, 0, 0], size: [0.4, "
+        "0.4]}]\n")
+    written("probe", "run", "--gauges", "more.yaml", "-o", "probe.csv")
+    assert header(written.folder / "probe.csv") == names(section("Probe"))
 
 
 def test_a_study_has_the_columns_and_keys_of_the_page(written):

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .comparison import compare_data
     from .fields import Field, Frame
     from .gauges import Gauge
+    from .probes import probe
     from .run_file import Run, open
     from .simulate import plan, run
     from .sweep import Batch, batch, read_batch
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["BadInput", "Batch", "Body", "Diverged", "Field", "FileError", "Frame", "Gauge",
            "MissingPackage", "NotThere", "PbfError", "PbfWarning", "Run", "Stopped", "Table",
-           "ToolError", "UnknownName", "batch", "compare_data", "open", "plan", "plot", "read_batch", "read_csv",
-           "run"]
+           "ToolError", "UnknownName", "batch", "compare_data", "open", "plan", "plot",
+           "probe", "read_batch", "read_csv", "run"]
 __version__ = "0.1.0"
 
 # Where the rest is; "" for a module. It needs numpy and h5py, and is read when it is asked for: the
@@ -29,7 +30,8 @@ __version__ = "0.1.0"
 _PLACES = {"Body": "bodies", "Field": "fields", "Frame": "fields", "Gauge": "gauges",
            "Run": "run_file", "open": "run_file", "plan": "simulate", "run": "simulate",
            "Batch": "sweep", "batch": "sweep", "read_batch": "sweep", "Table": "table",
-           "read_csv": "table", "plot": "", "compare_data": "comparison"}
+           "read_csv": "table", "plot": "", "compare_data": "comparison",
+           "probe": "probes"}
 
 
 def __getattr__(name: str) -> Any:

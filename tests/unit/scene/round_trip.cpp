@@ -147,6 +147,8 @@ Scene unlike_default() {
   s.vorticity = Vorticity{2.5};
   s.settle = Settle{1.0 / 7, Double3{1.0 / 3, 0, -1e5}};
   s.measure_every = 17;
+  s.summary_from = 1.0 / 7;
+  s.summary = {"load/z_min/impulse_x", "load/7/force_z/mean"};
   s.guard = GuardSettings{1000.5, 0.25, 999};
   s.output = Output{1.0 / 30, 0.0375, {"density"}, Precision::dbl, Compression::gzip};
   s.render = Render{0.5,
