@@ -16,13 +16,9 @@ namespace {
 
 constexpr double kTension = 0.072;  // N/m, of water
 
-struct FlowSizes {
-  double depth = 0, tank = 0;  ///< m
-  double width = 0;            ///< m, least extent of an obstacle; 0: none
-  double speed = 0;            ///< m/s
-};
+}  // namespace
 
-FlowSizes sizes_of(const Scene& s) {
+FlowSizes flow_sizes(const Scene& s) {
   FlowSizes z;
   const auto down = std::size_t(level_axis(s));
   double area = 1, held = 0;
@@ -40,8 +36,9 @@ FlowSizes sizes_of(const Scene& s) {
     held += volume * (box.high[down] - box.low[down]);
     z.speed = std::max(z.speed, length(b.velocity));
   }
-  const double g = length(s.gravity), fall = z.depth - held / area;
-  if (g > 0 && fall > s.fluid.spacing) z.speed = std::max(z.speed, std::sqrt(g * fall));
+  const double g = length(s.gravity);
+  if (g > 0) z.fall = z.depth - held / area;
+  if (z.fall > s.fluid.spacing) z.speed = std::max(z.speed, std::sqrt(g * z.fall));
   z.speed = std::max(z.speed, fastest_obstacle(s, 0, s.time.end));
   for (const Obstacle& o : s.obstacles) {
     if (const auto* box = std::get_if<obstacle_keys::Box>(&o.shape)) {
@@ -59,10 +56,8 @@ FlowSizes sizes_of(const Scene& s) {
   return z;
 }
 
-}  // namespace
-
 std::vector<SceneNumber> scene_numbers(const Scene& s) {
-  const FlowSizes z = sizes_of(s);
+  const FlowSizes z = flow_sizes(s);
   const double d = s.fluid.spacing, h = s.h(), g = length(s.gravity), rho = s.fluid.rest_density,
                dt = s.time.step / s.solver.substeps;
   std::vector<SceneNumber> all;

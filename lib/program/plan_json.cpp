@@ -6,6 +6,7 @@
 #include "lib/program/numbers.h"
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
+#include "lib/program/settings_row.h"
 #include "lib/program/threads.h"
 #include "lib/program/wave_plan.h"
 #include "lib/scene/auto_step.h"
@@ -94,6 +95,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
   for (const PlanFile& f : plan.files)
     files.push_back({{"name", f.name}, {"number", f.number}, {"bytes", f.bytes}});
   for (const LeftOut& l : plan.left_out) left.push_back({{"what", l.what}, {"because", l.because}});
+  const std::optional<SettingsRow> row = settings_row(s);
   for (const SceneNumber& n : scene_numbers(s))
     numbers.push_back({{"name", n.name}, {"value", n.value}, {"formula", n.formula}});
   const PlanTotals totals = plan_totals(plan, s);
@@ -104,6 +106,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"free_bodies", bodies_json(s)},
           {"waves", wave_json(s)},
           {"numbers", numbers},
+          {"settings_row", row ? Json(row->row) : Json()},
           {"spacing_m", s.fluid.spacing},
           {"h_m", s.h()},
           {"end_s", totals.end},

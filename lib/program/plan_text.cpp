@@ -10,6 +10,7 @@
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
+#include "lib/program/settings_row.h"
 #include "lib/program/settling.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/threads.h"
@@ -149,6 +150,13 @@ std::string passes_part(const Plan& plan, const Scene& s) {
   return out;
 }
 
+std::string settings_line(const Scene& s) {
+  const std::optional<SettingsRow> row = settings_row(s);
+  return row ? fmt::format("settings for such scenes: \"{}\" of configs/SETTINGS.md ({})\n",
+                           row->heading, row->because)
+             : "";
+}
+
 std::string grid_part(const Plan& plan, const Scene& s) {
   std::string out = fmt::format(
       "grid {} (half) x {} x {} cells of edge {:g} h; internal axes x, y, z: {} of the scene\n",
@@ -190,9 +198,9 @@ std::string plan_summary(const Plan& plan, const Scene& s, const std::string& ru
 }
 
 std::string plan_details(const Plan& plan, const Scene& s) {
-  std::string out = wave_part(s) + numbers_part(s) + emission_text(s, plan) + bodies_part(s) +
-                    files_part(plan, s) + memory_part(plan, s) + passes_part(plan, s) +
-                    grid_part(plan, s);
+  std::string out = settings_line(s) + wave_part(s) + numbers_part(s) + emission_text(s, plan) +
+                    bodies_part(s) + files_part(plan, s) + memory_part(plan, s) +
+                    passes_part(plan, s) + grid_part(plan, s);
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;
