@@ -1,0 +1,56 @@
+"""tests/regression/waves: the flumes that measure how much height waves lose, and the fit of them."""
+
+import re
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import ROOT, drawn
+
+FOLDER = ROOT / "tests/regression/waves"
+
+
+@pytest.fixture
+def loss(monkeypatch):
+    monkeypatch.syspath_prepend(str(FOLDER))
+    import loss
+    return loss
+
+
+def test_the_formula_of_the_plan_is_that_of_the_measurement(loss, pbf, tmp_path):
+    for number, case in enumerate(loss.CASES[::5]):
+        (tmp_path / f"{number}.yaml").write_text(loss.scene(case)[1])
+        done = subprocess.run([pbf, "plan", f"{number}.yaml"], cwd=tmp_path, capture_output=True,
+                              text=True)
+        assert done.returncode == 0, done.stderr
+        kd, height, length = case.numbers
+        table = {"kd": np.array([kd]), "height_over_d": np.array([height]),
+                 "length_over_d": np.array([length])}
+        said = float(re.search(r"expected loss of height: about (\S+) %", done.stdout)[1])
+        assert said == pytest.approx(100 * loss.expected(table, *loss.PRESENT)[0], rel=0.05)
+
+
+def test_a_fit_finds_the_numbers_that_made_a_table(loss, tmp_path):
+    rows = []
+    for case in loss.CASES:
+        kd, height, length = case.numbers
+        rows.append({"dimensions": case.dimensions, "depth_m": case.depth, "kd": kd,
+                     "height_over_d": height, "length_over_d": length, "loss": 0, "note": case.note})
+    loss.write(tmp_path / "t.csv", rows)
+    table = loss.read(tmp_path / "t.csv")
+    made = (11.0, 6.0, 0.4)
+    table["loss"] = loss.expected(table, *made)
+    assert loss.fit(table, table["dimensions"] > 0) == pytest.approx(made, rel=1e-6)
+    table["loss"][3] += 0.01
+    assert "+0." in loss.report(table)[1]
+    loss.figure(table, made).savefig(tmp_path / "a.png")
+    assert drawn(tmp_path / "a.png")
+
+
+def test_twins_at_two_depths_are_the_same_flume_in_other_units(loss):
+    twin = next(case for case in loss.CASES if "twin" in case.note)
+    other = next(case for case in loss.CASES if case.numbers == pytest.approx(twin.numbers) and
+                 case.dimensions == 2 and case.depth == 0.3)
+    for case in (twin, other):  # steps over the time in which a wave runs one depth
+        steps = case.pace * case.spacing * (9.81 / case.depth) ** 0.5
+        assert steps == pytest.approx(0.4 * 0.005 * (9.81 / 0.3) ** 0.5)
