@@ -69,9 +69,9 @@ std::string waves_of(const Scene& s, const Obstacle& o) {
       w.height / d, w.length() / d, w.depth / d, w.period / s.time.step);
   if (const double loss = w.loss(d); loss > 0)
     out += fmt::format(
-        "  expected loss of height: about {:.2g} % per wavelength (estimate, fitted to "
-        "two-dimensional flumes with levels: on)\n",
-        100 * loss);
+        "  expected loss of height: about {:.2g} % per wavelength (estimate, fitted to flumes in "
+        "{} dimensions with levels: on)\n",
+        100 * loss, w.dimensions == 2 ? "two" : "three");
   return out + fmt::format("  the first wave is at the far end at {:.3g} s, and back at {:.3g} s\n",
                            w.arrival(w.ahead) - s.time.motion_begin,
                            w.arrival(2 * w.ahead) - s.time.motion_begin);

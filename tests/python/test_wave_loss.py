@@ -23,11 +23,11 @@ def test_the_formula_of_the_plan_is_that_of_the_measurement(loss, pbf, tmp_path)
         done = subprocess.run([pbf, "plan", f"{number}.yaml"], cwd=tmp_path, capture_output=True,
                               text=True)
         assert done.returncode == 0, done.stderr
-        kd, height, length = case.numbers
-        table = {"kd": np.array([kd]), "height_over_d": np.array([height]),
+        _, height, length = case.numbers
+        table = {"dimensions": np.array([case.dimensions]), "height_over_d": np.array([height]),
                  "length_over_d": np.array([length])}
         said = float(re.search(r"expected loss of height: about (\S+) %", done.stdout)[1])
-        assert said == pytest.approx(100 * loss.expected(table, *loss.PRESENT)[0], rel=0.05)
+        assert said == pytest.approx(100 * loss.expected(table)[0], rel=0.05)
 
 
 def test_a_fit_finds_the_numbers_that_made_a_table(loss, tmp_path):
@@ -38,12 +38,12 @@ def test_a_fit_finds_the_numbers_that_made_a_table(loss, tmp_path):
                      "height_over_d": height, "length_over_d": length, "loss": 0, "note": case.note})
     loss.write(tmp_path / "t.csv", rows)
     table = loss.read(tmp_path / "t.csv")
-    made = (11.0, 6.0, 0.4)
-    table["loss"] = loss.expected(table, *made)
-    assert loss.fit(table, table["dimensions"] > 0) == pytest.approx(made, rel=1e-6)
-    table["loss"][3] += 0.01
-    assert "+0." in loss.report(table)[1]
-    loss.figure(table, made).savefig(tmp_path / "a.png")
+    made = {2: (12.0, 3.0), 3: (5.0, 0.0)}
+    table["loss"] = loss.expected(table, made)
+    for dimensions, numbers in made.items():
+        assert loss.fit(table, dimensions) == pytest.approx(numbers, rel=1e-6)
+    assert "3-D, fitted: a 5, b 0; residuals -0.0 to +0.0" in loss.report(table)[3]
+    loss.figure(table).savefig(tmp_path / "a.png")
     assert drawn(tmp_path / "a.png")
 
 

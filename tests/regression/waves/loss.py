@@ -21,7 +21,7 @@ from pbf_tools import style, waves
 FIRST, LAST, ZONE, FLUME = 1.0, 3.5, 3.75, 4.75  # wavelengths from the paddle
 WAIT, WINDOW = 2, 3                              # periods
 GRAVITY = 9.81
-PRESENT = (14.5, 4.0, 0.25)  # a, b, c of WaveMaker::loss (lib/scene/waves.cpp)
+PRESENT = {2: (10.6, 5.6), 3: (7.8, 0)}  # a and b of WaveMaker::loss (lib/scene/waves.cpp)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -165,9 +165,9 @@ def measure_all(cases, folder, program, backend, jobs, out):
             number, row = done.result()
             rows[number] = row
             write(out, [rows[k] for k in sorted(rows)])
-            print(f"{row['dimensions']}-D, D {row['depth_m']:g} m, kD {row['kd']:.2f}, H {row['height_over_d']:.3g} d, "
-                  f"L {row['length_over_d']:.0f} d: loss {100 * row['loss']:.1f} %, k "
-                  f"{100 * row['wavenumber_error']:+.1f} %", flush=True)
+            print("{dimensions}-D, D {depth_m:g} m, kD {kd:.2f}, H {height_over_d:.3g} d, L "
+                  "{length_over_d:.0f} d: loss {loss:.1%}, k {wavenumber_error:+.1%}".format(**row),
+                  flush=True)
     return [rows[k] for k in sorted(rows)]
 
 
@@ -186,48 +186,58 @@ def read(path):
             np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
 
 
-def expected(table, a, b, c):
-    """Share of the height per wavelength, of the formula of WaveMaker::loss."""
-    return 1 - np.exp(-a / table["length_over_d"] * (1 + b / table["height_over_d"])
-                      * table["kd"] ** -c)
+def expected(table, numbers=PRESENT):
+    """Share of the height per wavelength, of the formula of WaveMaker::loss; `numbers`: a and b by
+    the number of dimensions."""
+    a, b = (np.where(table["dimensions"] == 2, numbers[2][k], numbers[3][k]) for k in range(2))
+    return 1 - np.exp(-a / table["length_over_d"] * (1 + b / table["height_over_d"]))
 
 
-def fit(table, chosen):
-    """a, b, c for the least squares of the loss of the chosen rows (Gauss and Newton)."""
-    part = {name: column[chosen] for name, column in table.items()}
-    found = np.array(PRESENT)
-    for _ in range(100):
-        base = expected(part, *found)
-        slope = np.column_stack([(expected(part, *(found + step)) - base) / 1e-6
-                                 for step in 1e-6 * np.eye(3)])
-        change = np.linalg.lstsq(slope, part["loss"] - base, rcond=None)[0]
-        found = found + change
-        if np.all(abs(change) < 1e-9 * abs(found)):
-            break
-    return found
+def fit(table, dimensions):
+    """a and b for the least squares of the loss of the flumes in so many dimensions; b is not below 0
+    and in three dimensions 0, as these flumes do not tell it from 0. For each b a by Newton's method,
+    b on finer and finer grids."""
+    here = table["dimensions"] == dimensions
+    loss, over_l, over_h = table["loss"][here], 1 / table["length_over_d"][here], \
+        1 / table["height_over_d"][here]
+
+    def tried(b):
+        a = 10.0
+        for _ in range(30):
+            left = np.exp(-a * over_l * (1 + b * over_h))
+            slope = left * over_l * (1 + b * over_h)
+            a += np.sum(slope * (loss - 1 + left)) / np.sum(slope ** 2)
+        return np.sum((loss - 1 + np.exp(-a * over_l * (1 + b * over_h))) ** 2), a, b
+
+    best, reach = tried(0.0), 20.0
+    while dimensions == 2 and reach > 1e-9:
+        best = min((tried(max(best[2] + part * reach, 0)) for part in np.linspace(-1, 1, 9)),
+                   key=lambda found: found[0])
+        reach /= 2
+    return best[1:]
 
 
 def report(table):
-    """Fits of all rows and of both dimensions, and the worst residuals of each and of the present
-    formula, in points (hundredths of the height)."""
-    deep = table["dimensions"] == 3
+    """Residuals of the present formula and of one fitted to the table, in points (hundredths of the
+    height), in two and three dimensions."""
     lines = []
-    for name, chosen in (("all", deep | ~deep), ("2-D", ~deep), ("3-D", deep)):
-        for what, numbers in (("present", np.array(PRESENT)), ("fitted", fit(table, chosen))):
-            rest = 100 * (table["loss"] - expected(table, *numbers))[chosen]
-            lines.append("{}, {}: a {:.4g}, b {:.4g}, c {:.4g}; residuals {:+.1f} to {:+.1f} points, "
-                         "RMS {:.2f}".format(name, what, *numbers, rest.min(), rest.max(),
-                                             math.sqrt(np.mean(rest ** 2))))
+    for what, numbers in (("present", PRESENT), ("fitted", {n: fit(table, n) for n in (2, 3)})):
+        for n in (2, 3):
+            rest = 100 * (table["loss"] - expected(table, numbers))[table["dimensions"] == n]
+            lines.append("{}-D, {}: a {:.4g}, b {:.4g}; residuals {:+.1f} to {:+.1f} points, RMS "
+                         "{:.2f}".format(n, what, *numbers[n], rest.min(), rest.max(),
+                                         math.sqrt(np.mean(rest ** 2))))
     return lines
 
 
-def figure(table, numbers):
-    """Measured against expected loss, and what is left over L/d."""
+@style.look()
+def figure(table):
+    """Measured loss against that of the present formula, and what is left over L/d."""
     fig, axes = style.figure(1, 2, (9.0, 4.2))
     for k, (label, of) in enumerate((("2-D, 0.3 m", (2, 0.3)), ("2-D, 0.6 and 0.15 m", (2, None)),
                                      ("3-D, 0.3 m", (3, 0.3)), ("3-D, 0.6 m", (3, None)))):
         here = (table["dimensions"] == of[0]) & ((table["depth_m"] == 0.3) == (of[1] == 0.3))
-        said, is_ = 100 * expected(table, *numbers)[here], 100 * table["loss"][here]
+        said, is_ = 100 * expected(table)[here], 100 * table["loss"][here]
         for panel, x, y in ((axes[0, 0], said, is_), (axes[0, 1], table["length_over_d"][here], is_ - said)):
             panel.plot(x, y, style.MARKERS[k], color=style.COLORS[k], label=label)
     most = 100 * table["loss"].max() * 1.08

@@ -76,6 +76,19 @@ TEST_CASE("waves: height over stroke of pistons and flaps is that of Biesel's th
   CHECK(std::isfinite(flap_ratio(1000, 0.5)));
 }
 
+TEST_CASE("waves: in two dimensions low ones lose more height, in three all lose the same, less") {
+  WaveMaker w;
+  w.k = 2 * kPi / 1.77, w.depth = 0.3, w.height = 0.04;
+  const auto loss = [&](int dimensions, double height) {
+    w.dimensions = dimensions, w.height = height;
+    return w.loss(0.01);
+  };
+  CHECK(loss(2, 0.04) == Approx(0.134).margin(5e-4));
+  CHECK(loss(2, 0.08) == Approx(0.097).margin(5e-4));
+  CHECK(loss(3, 0.04) == Approx(0.043).margin(5e-4));
+  CHECK(loss(3, 0.08) == loss(3, 0.04));
+}
+
 TEST_CASE("waves: regular ones of second order have the stroke and the bound crest of theory") {
   const WaveMaker w = maker(flume(kRegular));
   CHECK(w.second);
