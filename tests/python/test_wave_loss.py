@@ -47,8 +47,18 @@ def test_a_fit_finds_the_numbers_that_made_a_table(loss, tmp_path):
     assert drawn(tmp_path / "a.png")
 
 
+def test_the_page_has_the_rows_of_the_table_and_the_residuals_of_the_formula(loss):
+    page = (FOLDER / "README.md").read_text()
+    table = loss.read(FOLDER / "loss_nvidia_h200.csv")
+    assert len(table["loss"]) == len(loss.CASES) and "\n".join(loss.rows(table)) in page
+    for dimensions, most in ((2, 4.1), (3, 2.1)):
+        here = table["dimensions"] == dimensions
+        assert abs(100 * (table["loss"] - loss.expected(table)))[here].max() < most
+        assert loss.fit(table, dimensions) == pytest.approx(loss.PRESENT[dimensions], rel=0.02)
+
+
 def test_twins_at_two_depths_are_the_same_flume_in_other_units(loss):
-    twin = next(case for case in loss.CASES if "twin" in case.note)
+    twin = next(case for case in loss.CASES if "2.83 ms" in case.note)
     other = next(case for case in loss.CASES if case.numbers == pytest.approx(twin.numbers) and
                  case.dimensions == 2 and case.depth == 0.3)
     for case in (twin, other):  # steps over the time in which a wave runs one depth

@@ -78,11 +78,11 @@ CASES = (
     Case(0.3, 1.2, 0.010, 0.04, pace=0.2, note="half the step"),
     Case(0.6, 2.0 * R2, 0.020, 0.12), Case(0.6, 2.0 * R2, 0.010, 0.12),
     Case(0.6, 1.2 * R2, 0.020, 0.08), Case(0.6, 1.2 * R2, 0.010, 0.08),
-    Case(0.6, 1.2 * R2, 0.010, 0.08, pace=TWIN, note="twin of 0.3 m, d = 5 mm"),
+    Case(0.6, 1.2 * R2, 0.010, 0.08, pace=TWIN, note="step 2.83 ms"),
     Case(0.6, 0.8 * R2, 0.010, 0.08), Case(0.15, 1.2 / R2, 0.005, 0.02),
     Case(0.3, 2.0, 0.012, 0.06, 3), Case(0.3, 1.2, 0.010, 0.04, 3), Case(0.3, 1.2, 0.010, 0.08, 3),
     Case(0.3, 1.2, 0.0075, 0.06, 3), Case(0.3, 0.8, 0.010, 0.04, 3), Case(0.3, 0.8, 0.006, 0.04, 3),
-    Case(0.3, 0.8, 0.010, 0.04, 3, width=20, note="twice the width"),
+    Case(0.3, 0.8, 0.010, 0.04, 3, width=20, note="20 d wide"),
     Case(0.6, 1.2 * R2, 0.020, 0.08, 3))
 COARSE = (Case(0.3, 0.8, 0.015, 0.06), Case(0.3, 0.8, 0.015, 0.045))
 
@@ -228,6 +228,19 @@ def report(table):
                          "{:.2f}".format(n, what, *numbers[n], rest.min(), rest.max(),
                                          math.sqrt(np.mean(rest ** 2))))
     return lines
+
+
+def rows(table):
+    """The rows of the page's table."""
+    said = 100 * expected(table)
+    out = []
+    for k, note in enumerate(table["note"]):
+        what = f"{table['dimensions'][k]:.0f}-D, {table['depth_m'][k]:g} m{', ' * bool(note)}{note}"
+        out.append("| {} | {:.2f} | {:.3g} | {:.0f} | {:.1f} | {:.1f} | {:+.1f} | {:.2f} |".format(
+            what, table["kd"][k], table["height_over_d"][k], table["length_over_d"][k],
+            100 * table["loss"][k], said[k], 100 * table["wavenumber_error"][k],
+            table["height_at_paddle"][k]).replace("| -", "| \u2212"))
+    return out
 
 
 @style.look()
