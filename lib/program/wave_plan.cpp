@@ -69,9 +69,12 @@ std::string waves_of(const Scene& s, const Obstacle& o) {
       w.height / d, w.length() / d, w.depth / d, w.period / s.time.step);
   if (const double loss = w.loss(d); loss > 0)
     out += fmt::format(
-        "  expected loss of height: about {:.2g} % per wavelength (estimate, fitted to "
-        "two-dimensional flumes with levels: on)\n",
-        100 * loss);
+        "  expected loss of height: about {:.2g} % per wavelength (estimate, fitted to flumes in "
+        "{} dimensions with levels: on and h = {} d)\n",
+        100 * loss, w.dimensions == 2 ? "two" : "three",
+        w.has_short_kernel() ? "2"
+        : w.dimensions == 2  ? "3.5"
+                             : "3");
   for (const WaveSponge& zone : wave_sponges(s, w))
     out += fmt::format(
         "  sponge {}: {:.2g} wavelengths, expected to reflect {:.1g} of the height (linear theory "

@@ -142,6 +142,7 @@ double repeat_of(const Scene& s, const Motion& m) {
 WaveMaker wave_maker(const Scene& s, const Obstacle& o) {
   const Motion& m = *o.motion;
   WaveMaker w = placed_maker(s, o);
+  w.dimensions = s.dimensions, w.smoothing_ratio = s.fluid.smoothing_ratio;
   w.depth = m.depth ? *m.depth : filled_depth(s, o).value_or(FilledDepth{}).level;
   w.start = m.start, w.gain = m.gain;
   if (m.kind == MotionKind::solitary_waves) {

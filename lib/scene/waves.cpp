@@ -79,7 +79,10 @@ double WaveMaker::breaks_at() const {
 
 double WaveMaker::loss(double d) const {
   if (!solitary.empty()) return 0;
-  return 1 - std::exp(-14.5 * d / length() * (1 + 4 * d / height) / std::pow(kd(), 0.25));
+  const double rate = has_short_kernel() ? (dimensions == 2 ? 133 : 81) * std::pow(d / height, 1.5)
+                      : dimensions == 2  ? 10.6 * (1 + 5.6 * d / height)
+                                         : 7.8;
+  return 1 - std::exp(-rate * d / length());
 }
 
 double WaveMaker::free_share() const {

@@ -49,6 +49,8 @@ struct SolitaryWave {
 
 /// A wave maker in its scene. Times are s of the motion's clock.
 struct WaveMaker {
+  int dimensions = 3;          ///< of the scene
+  double smoothing_ratio = 2;  ///< h/d of the scene
   bool flap = false;
   std::size_t axis = 0;                ///< along which waves run, 0 or 1
   double sign = 1;                     ///< -1: they run against it
@@ -70,9 +72,13 @@ struct WaveMaker {
   /// m, the height at which waves break by McCowan and Miche, and whether the first decides.
   double breaks_at() const;
   bool by_mccowan() const;
-  /// Share of the height that a wave loses per wavelength at a spacing (m): an estimate, from a fit
-  /// to two-dimensional flumes with levels: on, kD 0.6 to 2, H/d 2 to 12. 0 of solitary waves.
+  /// Share of the height that a wave loses per wavelength at a spacing (m): an estimate from fits
+  /// to flumes with levels: on and h = 2 d, or 3.5 d (in three dimensions 3 d), whichever is
+  /// nearer (tests/regression/waves); kD 0.6 to 2, in two dimensions H/d 2 to 12, in three 4 to 8.
+  /// 0 of solitary waves.
   double loss(double spacing) const;
+  /// Whether h is nearer to 2 d than to what was recommended for waves without levels.
+  bool has_short_kernel() const { return smoothing_ratio < (dimensions == 2 ? 2.75 : 2.5); }
   /// Of regular waves of a piston: the free wave of half the period that a motion of first order
   /// makes, as a share of the first harmonic. 0 of others.
   double free_share() const;

@@ -70,9 +70,11 @@ def gauged(pbf, tmp_path_factory):
 
 
 @pytest.fixture
-def tools(capsys):
-    """tools("to-csv", ...) -> (exit code, stdout, stderr), as from a shell."""
+def tools(capsys, pbf, monkeypatch):
+    """tools("to-csv", ...) -> (exit code, stdout, stderr), as from a shell that knows the program."""
     from pbf_tools.__main__ import main
+
+    monkeypatch.setenv("PBF", str(pbf))
 
     def call(*arguments):
         capsys.readouterr()

@@ -229,4 +229,24 @@ def test_the_scene_on_a_base_and_the_command_of_several_gauged_runs_work(pbf, to
              for word in next(line for line in blocks(text) if "plot-gauges" in line).split()[3:]]
     code, out, _ = tools(*words)
     assert code == 0 and drawn(tmp_path / "gauges.png")
-    assert re.search(r"^H2, coarse: h2: RMS .* 11 points\nH2, fine: h2: RMS", out, re.MULTILINE)
+    assert re.search(r"^H2, coarse: h2: RMS .* 11 points.*\nH2, fine: h2: RMS", out, re.MULTILINE)
+
+
+def test_three_commands_lead_from_an_experiment_to_a_picture(shell, tmp_path):
+    (tmp_path / "configs").symlink_to(ROOT / "configs")
+    text = section("Comparison with measurements")
+    lines = blocks(text)[0].splitlines()
+    assert [line.split()[:2] for line in lines] == [["pbf", "run"], ["pbf", "compare-data"],
+                                                    ["python3", "-m"]]
+    said = {}
+    for line in lines:
+        done = shell(line)
+        assert done.returncode == 0 and "warning" not in done.stderr, (line, done.stderr)
+        said[line.split()[1]] = done.stdout
+    assert drawn(tmp_path / "heights.png")
+    for number in ("RMS", "lag", "peak", "impulse"):  # the page's to a twentieth: another machine rounds
+        page, here = (re.search(rf"{number} (-?[\d.]+)", t)[1]
+                      for t in (blocks(text, "text")[0], said["compare-data"]))
+        assert float(here) == pytest.approx(float(page), rel=0.05, abs=0.01), number
+    rms = re.search(r"RMS (\S+) m", said["compare-data"])[1]
+    assert f"H2: H2_m: RMS deviation {rms} m" in said["-m"]

@@ -1,31 +1,38 @@
-"""Measured values for gauges: columns of CSV tables in the gauges' units, and how far runs deviate."""
+"""Measured values for gauges: which columns of CSV tables belong to which, and what the program says of
+a run beside them (`pbf compare-data`)."""
 
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from . import gaps, units
-from .errors import BadInput, UnknownName, unknown
+from .comparison import compare_data
+from .errors import BadInput, PbfError, UnknownName, unknown
 from .gauges import Gauge
+from .run_file import Run
 from .table import Table, need, read_csv
 
-FEWEST = 10  # points that a comparison takes
 SECONDS = ("t", "time", "Time")  # columns of times that need no unit in their names
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A column for a gauge, times in s and values in the gauge's unit, shape (rows,); `component` of
-    a velocity, 0 to 2."""
+    """A column for a gauge, times in s and values in the gauge's unit, shape (rows,), nan where the
+    unit is none of theirs, which the program refuses; `component` of a velocity, 0 to 2. `options`:
+    with which the program reads the same."""
 
     path: str
     column: str
     time: np.ndarray
     value: np.ndarray
-    component: int | None = None
+    component: int | None
+    options: Mapping[str, Any]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,8 +50,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time-scale", type=float, metavar="F",
                         help="seconds of one unit of that column (default: as its name says, t_ms; "
                              "1 for t and time)")
-    parser.add_argument("--shift", type=float, default=0, metavar="S",
-                        help="add this to the measured times (s; default 0)")
+    parser.add_argument("--lag", "--shift", default="0", metavar="S",
+                        help="by how much runs are late (s): added to the measured times. fit: the "
+                             "shift of largest correlation within --lag-range; the picture has that "
+                             "of the first run (default 0)")
+    parser.add_argument("--lag-range", metavar="A,B", help="least and largest shift of fit (s)")
+    parser.add_argument("--average", metavar="S",
+                        help="compare means over windows of this length (s)")
+    parser.add_argument("--between", metavar="A,B", help="compare at these measured times (s)")
     parser.add_argument("--scale", type=float, metavar="F",
                         help="multiply measured values (default: as the column's name says, P1_kPa; "
                              "1 without a unit)")
@@ -119,18 +132,19 @@ def unit_of(table: Table, column: str, name: str = "") -> str:
     return said if said != "1" else "" if column == name else units.split(column)[1]
 
 
+def time_column(table: Table, wanted: str | None, path: str) -> str:
+    if wanted:
+        need(table, [wanted], path)
+        return wanted
+    names = [name for name in table if name.split("_")[0].lower() in ("t", "time")]
+    return names[0] if names else next(iter(table))
+
 def _read(args: argparse.Namespace, gauge: Gauge, path: str, table: Table,
           column: str) -> Measured:
     need(table, [column], path)
-    name = time_column(table, args.time_column, path)
-    if table[name].dtype.kind != "f" or table[column].dtype.kind != "f":
+    clock = time_column(table, args.time_column, path)
+    if table[clock].dtype.kind != "f" or table[column].dtype.kind != "f":
         raise BadInput(f"{path}: column {column} or its times are no numbers")
-    scale = _factor(gauge, table, column) if args.scale is None else args.scale
-    if scale is None:
-        raise BadInput(f"{path}: column {column} is in {unit_of(table, column)}, and gauge "
-                       f"{gauge.name} reads a {gauge.kind} in {gauge.unit}: name another column "
-                       f"(--column {gauge.name}=NAME), or give --scale, the {gauge.unit} of one "
-                       "unit")
     component = None
     if gauge.value.ndim == 2:
         end = units.split(column)[0].rpartition("_")[2]
@@ -139,61 +153,23 @@ def _read(args: argparse.Namespace, gauge: Gauge, path: str, table: Table,
                            f"{column} does not end in its component, as {gauge.name}_x_m_s does: "
                            "give --component x, y or z")
         component = "xyz".index(args.component or end)
-    time = _seconds(args, table, name, path) * table[name] + args.shift
-    return Measured(path, column, time, scale * table[column] + args.offset, component)
+    second = args.time_scale if args.time_scale is not None else \
+        units.factor(unit_of(table, clock) or ("s" if clock in SECONDS else ""), "s")
+    scale = args.scale if args.scale is not None else _factor(gauge, table, column)
+    options = {"time_column": clock, "time_scale": second, "scale": scale, "offset": args.offset,
+               "lag": args.lag, "lag_range": args.lag_range, "average": args.average,
+               "between": args.between}
+    return Measured(path, column, (math.nan if second is None else second) * table[clock],
+                    (math.nan if scale is None else scale) * table[column] + args.offset, component,
+                    {name: value for name, value in options.items() if value is not None})
 
 
-def time_column(table: Table, wanted: str | None, path: str) -> str:
-    if wanted:
-        need(table, [wanted], path)
-        return wanted
-    names = [name for name in table if name.split("_")[0].lower() in ("t", "time")]
-    return names[0] if names else next(iter(table))
-
-
-def _seconds(args: argparse.Namespace, table: Table, name: str, path: str) -> float:
-    """The seconds of one unit of a time column."""
-    if args.time_scale is not None:
-        return args.time_scale
-    unit = unit_of(table, name) or ("s" if name in SECONDS else "")
-    if not unit:
-        raise BadInput(f"{path}: column {name} has no unit of time: give --time-scale, the seconds "
-                       "of one unit")
-    factor = units.factor(unit, "s")
-    if factor is None:
-        raise BadInput(f"{path}: column {name} is in {unit}, which is no unit of time: name the "
-                       "column of times with --time-column, or give --time-scale, the seconds of "
-                       "one unit")
-    return factor
-
-
-def deviation(gauge: Gauge, data: Measured, run: str = "the run") -> tuple[float, float, int]:
-    """RMS of reading - measured at the measured times that the run covers, the correlation of the
-    two, nan where one is constant, and how many they are. BadInput where these are fewer than ten,
-    or where less than half of the measured times are within the run.
-
-    >>> t = np.arange(12.0)
-    >>> line = Gauge("a", "level", "", "m", t, 2 * t)
-    >>> rms, correlation, n = deviation(line, Measured("", "a", t + 0.5, 2 * t))
-    >>> round(rms, 6), round(correlation, 6), n
-    (1.0, 1.0, 11)
-    """
-    value = gauge.value if data.component is None else gauge.value[:, data.component]
-    good = np.isfinite(data.value) & np.isfinite(data.time)
-    t, y = data.time[good], data.value[good]
-    first, last = gauge.time[0], gauge.time[-1]
-    within = (t >= first - 1e-9 * last) & (t <= last + 1e-9 * last)  # of times in ms, say
-    at = np.interp(t[within], gauge.time, value)
-    common = np.isfinite(at)
-    at, measured = at[common], y[within][common]
-    if len(at) < FEWEST or 2 * np.count_nonzero(within) < len(t):
-        span = f" from {t.min():g} to {t.max():g} s" if len(t) else ""
-        raise BadInput(
-            f"{data.path}: column {data.column} has {len(t)} values{span}, of which "
-            f"{np.count_nonzero(within)} are within the readings of gauge {gauge.name} in {run}, "
-            f"{first:g} to {last:g} s, and {len(at)} have a reading; to compare, half of them and "
-            f"{FEWEST} at least must: check --time-scale and --shift, cut the table, or choose "
-            "other gauges with --gauge")
-    varied = np.std(at) > 0 and np.std(measured) > 0
-    correlation = float(np.corrcoef(at, measured)[0, 1]) if varied else float("nan")
-    return float(np.sqrt(np.mean((at - measured) ** 2))), correlation, len(at)
+def compared(run: Run, gauge: Gauge, data: Measured) -> dict[str, Any]:
+    """What the program says of a gauge beside a column: `rms`, `correlation`, `lag_s`, `peak` ...,
+    None where there is none. PbfError, with the run's path, where it cannot be compared."""
+    reading = gauge.name + ("" if data.component is None else "/" + "xyz"[data.component])
+    try:
+        return next(iter(compare_data(run, data.path, gauge={reading: data.column},
+                                      **data.options).values()))
+    except PbfError as problem:
+        raise PbfError(f"{run.path}: {problem}", problem.exit_code) from None

@@ -2,17 +2,19 @@
 
 There is one panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks.
 Several runs share the panels of the gauges that all of them have, one colour each. An experiment
-is a CSV table with a time column; the RMS deviation from it, the correlation and the number of
-points compared are printed. A column named like a gauge ("H2", "H2_mm", "U_x_m_s") belongs to it;
---column assigns other columns. Units at the end of a name are converted, of times too ("t_ms");
-a column without one is in the gauge's unit.
+is a CSV table with a time column; what `pbf compare-data` says of it is printed: the RMS deviation,
+the correlation, the number of points compared, the peaks. A column named like a gauge ("H2", "H2_mm",
+"U_x_m_s") belongs to it; --column assigns other columns. Units at the end of a name are converted, of
+times too ("t_ms"); a column without one is in the gauge's unit.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
+from dataclasses import replace
+from typing import Any
 
-import numpy as np
 from matplotlib.lines import Line2D
 
 from . import gaps, measured, style
@@ -20,12 +22,13 @@ from .errors import BadInput, UnknownName, note, unknown
 from .gauges import Gauge
 from .logs import RUN_HELP, labels, read_run
 from .measured import Measured
+from .run_file import Run
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-gauges out/dam_break_over_box -o gauges.png
   python -m pbf_tools plot-gauges out/coarse out/fine --gauge H2 -o levels.png
   python -m pbf_tools plot-gauges run.vtkhdf --experiment heights.csv --column H2=h2 --column H4=h4
-  python -m pbf_tools plot-gauges run.vtkhdf --gauge P1 --experiment p.csv --column p1 --shift 0.02
+  python -m pbf_tools plot-gauges run.vtkhdf --gauge P1 --experiment p.csv --column p1 --lag 0.02
   python -m pbf_tools plot-gauges out/sloshing --gauge eta --experiment surge.csv \\
       --column eta_mm --time-scale 1.3 --offset 0.6       (time in periods of 1.3 s)"""
 
@@ -76,6 +79,7 @@ def figure(args: argparse.Namespace) -> style.Picture:
     runs = [(path, file.gauges) for path, file in zip(args.runs, files)]
     names, called = choose(runs, args.gauge), labels(args.runs, [file.name for file in files])
     over = measured.of_gauges(args, [runs[0][1][name] for name in names])
+    said = {name: beside(files, runs[0][1][name], over[name]) for name in names}
     columns = 1 if len(names) < 4 else 2
     rows = (len(names) + columns - 1) // columns
     wide = 1.6 if len(runs) > 1 else 0  # for the legend
@@ -85,7 +89,11 @@ def figure(args: argparse.Namespace) -> style.Picture:
     last = 0.0
     for k, (name, axis) in enumerate(zip(names, axes.flat)):
         readings = {label: gauges[name] for label, (_, gauges) in zip(called, runs)}
-        draw(axis, readings, over[name], args.peaks)
+        draw(axis, readings, [replace(data, time=data.time + found[0]["lag_s"])
+                              for data, found in zip(over[name], said[name])], args.peaks)
+        for data, found in zip(over[name], said[name]):
+            for label, one in zip(called, found):
+                tell(fig, readings[label], data, one, label, alone=len(runs) == 1)
         last = max(last, *(float(g.time[-1]) for g in readings.values()))
         if k + columns >= len(names):
             axis.set_xlabel("time (s)")
@@ -127,16 +135,28 @@ def draw(axes, readings: dict[str, Gauge], over: list[Measured], peaks: bool) ->
                       alpha=0.7, label="run, " + PEAK, linestyle="-" if alone else ":")
     if alone and len(axes.lines) > 1:
         style.side_legend(axes) if len(axes.lines) > 4 else axes.legend()
-    for data in over:
-        for name, g in readings.items():
-            rms, correlation, n = measured.deviation(g, data, name)
-            which = "" if data.component is None else "_" + "xyz"[data.component]
-            alike = "no correlation, as one is constant" if np.isnan(correlation) else \
-                f"correlation {correlation:.3f}"
-            axes.figure.tell(f"{g.name}{which}{'' if alone else ', ' + name}: {data.column}: RMS "
-                             f"deviation {rms:.4g} {g.unit}, {alike} over {n} points",
-                             gauge=g.name + which, run=name, column=data.column, rms=rms,
-                             unit=g.unit, correlation=correlation, points=n)
+
+
+def beside(runs: list[Run], gauge: Gauge, over: list[Measured]) -> list[list[dict[str, Any]]]:
+    """What the program says of every run beside each column."""
+    return [[measured.compared(run, gauge, data) for run in runs] for data in over]
+
+
+def tell(fig: style.Picture, gauge: Gauge, data: Measured, found: dict[str, Any], run: str,
+         alone: bool) -> None:
+    """The line of a comparison, which names the run unless it is alone, and its numbers (nan: there
+    is none)."""
+    numbers = {name: math.nan if value is None else value for name, value in found.items()
+               if not isinstance(value, str)}
+    which = gauge.name + ("" if data.component is None else "_" + "xyz"[data.component])
+    alike = "no correlation, as one is constant" if found["correlation"] is None else \
+        f"correlation {found['correlation']:.3f}"
+    more = f"; lag {found['lag_s']:.4g} s" if found["lag_s"] else ""
+    if found["peak"] is not None and found["peak_data"] is not None:
+        more += f"; peak {found['peak']:.4g} {gauge.unit}, measured {found['peak_data']:.4g}"
+    fig.tell(f"{which}{'' if alone else ', ' + run}: {data.column}: RMS deviation "
+             f"{found['rms']:.4g} {gauge.unit}, {alike} over {found['points']:.0f} points{more}",
+             gauge=which, run=run, column=data.column, unit=gauge.unit, **numbers)
 
 
 def _look_of_measured(k: int, t: np.ndarray) -> dict[str, object]:

@@ -76,6 +76,24 @@ TEST_CASE("waves: height over stroke of pistons and flaps is that of Biesel's th
   CHECK(std::isfinite(flap_ratio(1000, 0.5)));
 }
 
+TEST_CASE("waves: low ones lose more height, with h = 2 d the least") {
+  WaveMaker w;
+  w.k = 2 * kPi / 1.77, w.depth = 0.3;
+  w.smoothing_ratio = 3;
+  const auto loss = [&](int dimensions, double height) {
+    w.dimensions = dimensions, w.height = height;
+    return w.loss(0.01);
+  };
+  CHECK(loss(2, 0.04) == Approx(0.134).margin(5e-4));
+  CHECK(loss(2, 0.08) == Approx(0.097).margin(5e-4));
+  CHECK(loss(3, 0.04) == Approx(0.043).margin(5e-4));
+  CHECK(loss(3, 0.08) == loss(3, 0.04));
+  w.smoothing_ratio = 2;
+  CHECK(loss(2, 0.04) == Approx(0.0896).margin(5e-4));
+  CHECK(loss(2, 0.08) == Approx(0.0326).margin(5e-4));
+  CHECK(loss(3, 0.08) == Approx(0.0200).margin(5e-4));
+}
+
 TEST_CASE("waves: regular ones of second order have the stroke and the bound crest of theory") {
   const WaveMaker w = maker(flume(kRegular));
   CHECK(w.second);
