@@ -11,21 +11,19 @@ import table
 
 
 def run_of(case, number, start, given, folder):
-    """The figures of one run, in their order, and its device. A run that the guard has stopped has
-    no figures: nan."""
+    """The figures of one run, in their order, its device and its seconds. A run that has failed, as
+    by the guard, has no figures: nan."""
     out = folder / f"{case.row}-{case.name}-{number}-{start}"
     begin = time.perf_counter()
     done = subprocess.run([given.pbf, "run", case.scene, *case.words(number, start, given.reduced),
                            "--backend", given.backend, "--threads", str(given.threads), "--quiet",
                            "--out", out], capture_output=True, text=True)
     seconds = time.perf_counter() - begin
-    if done.returncode not in (0, 3):
-        raise RuntimeError(f"{case.row}/{case.name}, {case.settings[number]['name']}: {done.stderr}")
+    if done.returncode != 0:
+        print(f"{case.row}/{case.name}, {case.settings[number]['name']}: {done.stderr}", flush=True)
+        return [float("nan")] * len(case.figures), given.backend, seconds
     run = pbf_tools.open(out)
-    if done.returncode == 3:
-        found = [float("nan")] * len(case.figures)
-    else:
-        found = [figures.value(run, f.source, seconds) for f in case.figures]
+    found = [figures.value(run, f.source, seconds) for f in case.figures]
     for path in out.glob("*.vtkhdf"):
         path.unlink()
     return found, run.info["device"], seconds
