@@ -57,10 +57,13 @@ def particles_per_second(run, seconds):
 
 def along(run, seconds, of, depth, period, between):
     """Regular waves along the gauges: `loss` per wavelength, `k` over theory, `height` at the paddle
-    (m), `second` harmonic over first, mean over the gauges."""
+    (m), `second` harmonic over first, mean over the gauges. `between`: window, as far as the run
+    goes (s)."""
     gauges = sorted((g for g in run.gauges if g[0] == "x"), key=lambda name: float(name[1:]))
     places = [float(g[1:]) / 100 for g in gauges]
-    found = waves.along([run.gauges[g] for g in gauges], places, depth, period, between=between)
+    readings = [run.gauges[g] for g in gauges]
+    window = between[0], min(between[1], readings[0].time[-1])
+    found = waves.along(readings, places, depth, period, between=window)
     if of == "height":
         fit = np.polyfit(places, np.log(found.table["height"]), 1)
         return np.exp(fit[1])
