@@ -29,16 +29,18 @@ def run_of(case, number, start, given, folder):
     return found, run.info["device"], seconds
 
 
-def jobs_of(cases, given):
-    """Case, setting and start of every run: first one of each setting, then those that repeat."""
+def jobs_of(cases, given, old):
+    """Case, setting and start of every run: first one of each setting, then those that repeat.
+    Without the settings that the lines `old` have."""
     jobs = [(case, number, start) for case in cases
             for number in range(1 if given.reduced else len(case.settings))
+            if not table.enough(old, case, number)
             for start in range(1 if given.reduced else case.starts[min(number, 1)])]
     return sorted(jobs, key=lambda job: job[2])
 
 
-def all_of(chosen, given, folder):
-    """The lines of the table. Settings without a finished run have none."""
+def all_of(chosen, given, folder, old=()):
+    """The lines of the settings that have been run."""
     cases = [c for r in chosen for c in r.cases if c.reduced is not None or not given.reduced]
     found, end = {}, time.monotonic() + given.seconds
 
@@ -51,7 +53,7 @@ def all_of(chosen, given, folder):
         print(f"{case.row}/{case.name}/{number}, start {start}: {result[2]:.1f} s", flush=True)
 
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        for job in [pool.submit(one, *job) for job in jobs_of(cases, given)]:
+        for job in [pool.submit(one, *job) for job in jobs_of(cases, given, old)]:
             job.result()
     defaults = rows.defaults_sha256()
     lines = []

@@ -35,11 +35,25 @@ def write(path, lines):
         out.writerows(lines)
 
 
-def merged(old, new, order):
-    """The old lines with those of new rows in their place."""
-    fresh = {line["row"] for line in new}
-    return [line for name in order
-            for line in (new if name in fresh else old) if line["row"] == name]
+def key_of(line):
+    return line["row"], line["case"], line["setting"]
+
+
+def ordered(every, old, new=()):
+    """The lines of all settings in the order of the rows, new ones in place of old ones. The advice is
+    what the rows say today."""
+    fresh = {key_of(line) for line in new}
+    kept = [line for line in old if key_of(line) not in fresh] + list(new)
+    return [{**line, "advice": "no" if k else "yes"} for r in every for c in r.cases
+            for k, s in enumerate(c.settings)
+            for line in kept if key_of(line) == (c.row, c.name, s["name"])]
+
+
+def enough(lines, case, number):
+    """Whether a setting is there, from as many starts as it should be."""
+    key = case.row, case.name, case.settings[number]["name"]
+    return any(key_of(line) == key and int(line["starts"]) >= case.starts[min(number, 1)]
+               for line in lines)
 
 
 def stamped(lines, chosen, pbf):
@@ -68,8 +82,8 @@ def changed(lines, every, pbf):
                    f"{'were' if len(old) > 1 else 'was'} measured{again}")
     for case in (c for r in every for c in r.cases):
         for k, setting in enumerate(case.settings):
-            mine = [line for line in lines if (line["row"], line["case"], line["setting"]) ==
-                    (case.row, case.name, setting["name"])]
+            mine = [line for line in lines
+                    if key_of(line) == (case.row, case.name, setting["name"])]
             what = f"row {case.row}, case {case.name}, setting '{setting['name']}'"
             if {line["figure"] for line in mine} != {f.name for f in case.figures}:
                 out.append(f"{what}: not all of its figures are in the table{again} "
