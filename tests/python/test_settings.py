@@ -120,6 +120,21 @@ def test_a_run_writes_means_and_half_ranges_and_tells_what_is_out_of_bounds(smal
     assert done.returncode == 1 and done.stderr == "run: --only pond: the rows are pool\n"
 
 
+def test_a_run_of_what_is_missing_leaves_the_other_lines_as_they_are(small, tmp_path):
+    small()
+    out = tmp_path / "out.csv"
+    lines = table.read(out)
+    marked = [{**line, "device": "other"} for line in lines]
+    table.write(out, marked)
+    assert small("--missing").stdout == "" and table.read(out) == marked
+    table.write(out, marked[:2])
+    assert re.fullmatch(r"pool/small/1, start 0: .*\n", small("--missing").stdout)
+    assert [x["device"] == "other" for x in table.read(out)] == [True, True, False, False]
+    table.write(out, [{**line, "starts": "1"} for line in marked])
+    assert small("--missing").stdout.count("pool/small/0, start") == 2
+    assert [x["device"] == "other" for x in table.read(out)] == [False, False, True, True]
+
+
 @pytest.mark.parametrize("old, new, told", [
     ("title: Pool", "titel: Pool", "titel: unknown key; there are advice, cases, name, title"),
     ("text: a pool\n", "\n", "pool/small: text is missing"),
