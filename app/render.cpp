@@ -14,6 +14,7 @@
 #include "lib/io/run_path.h"
 #include "lib/run/linked_files.h"
 #include "lib/run/load_run.h"
+#include "lib/run/wave_files.h"
 #include "lib/scene/load.h"
 #ifdef PBF_HAS_RENDER
 #include "lib/render/quantile_range.h"
@@ -210,6 +211,8 @@ int command_render(const RenderOptions& options) {
   // Pictures need the tables of motions and the surfaces of obstacles, no particles of files.
   if (!linked_paths(scene).empty())
     read_linked_files(scene, folder_of_files(scene, run, info.scene_path));
+  else
+    make_wave_tables(scene);
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
   const std::filesystem::path folder = options.out.empty()

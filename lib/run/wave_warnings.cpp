@@ -81,16 +81,9 @@ std::string step_text_of(const WaveMaker& w, double step) {
 }
 
 std::string settings_text(const Scene& s) {
-  const bool off = s.solver.levels == LevelsMode::off;
-  std::vector<std::string> texts;
-  if (off) texts.push_back("without solver.levels waves lose height and run slowly");
-  if (off && s.dimensions == 2 && s.solver.iterations == 1)
-    texts.push_back("with one iteration in two dimensions the fluid bursts");
-  if (s.fluid.smoothing_ratio < 3) texts.push_back("waves lose height with h below 3 d");
-  if (texts.empty()) return "";
-  return joined(texts, ", ") +
-         "; for waves give solver: {iterations: 1, substeps: 7, levels: on} "
-         "and fluid.smoothing_ratio 3, in two dimensions 3.5";
+  if (s.solver.levels != LevelsMode::off) return "";
+  return "without solver.levels waves lose height and run too fast; for waves give "
+         "solver: {iterations: 1, substeps: 7, levels: on} (configs/SETTINGS.md)";
 }
 
 /// Zones before the paddle take its own waves, and short ones reflect.

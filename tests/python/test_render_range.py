@@ -130,3 +130,18 @@ def test_a_file_without_the_field_is_refused_before_a_picture_is_there(pbf, mini
     assert done.returncode == 2
     assert "velocity" in done.stderr
     assert not list(tmp_path.glob("p/*.png"))
+
+
+def test_a_run_with_a_wave_maker_is_drawn_without_files_of_the_scene(pbf, tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "dimensions: 2\ndomain: {min: [0, 0], max: [4, 0.6]}\nfluid: {spacing: 0.02}\n"
+        "bodies: [{shape: block, min: [0.2, 0], max: [4, 0.3]}]\n"
+        "obstacles: [{name: paddle, shape: box, min: [-0.3, 0], max: [0.2, 0.6], motion: {\n"
+        "  kind: regular_waves, direction: [1, 0, 0], height: 0.06, period: 1.2}}]\n"
+        "time: {step: 0.002, end: 0.02}\noutput: {every: 0.01}\n")
+    subprocess.run([pbf, "run", "s.yaml", "--quiet", "--out", "run"], check=True, cwd=tmp_path,
+                   capture_output=True)
+    (tmp_path / "s.yaml").unlink()
+    done = render(pbf, tmp_path / "run/run.vtkhdf", tmp_path / "drawn")
+    assert done.returncode == 0, done.stderr
+    assert list((tmp_path / "drawn").glob("*.png"))

@@ -52,7 +52,7 @@ TEST_CASE("shipped scenes stay in the picture, and in the range of their colours
       {"tank_at_rest", {"fluid.spacing=0.03", "time.end=2"}},
       {"wave_maker",
        {"fluid.spacing=0.04", "domain.max=[6,0.04,0.8]", "bodies.0.max=[6,0.04,0.4]",
-        "obstacles.0.max=[0.2,0.04,0.8]", "render.range=auto", "time.step=0.004"}}};
+        "obstacles.0.max=[0.2,0.04,0.8]", "time.step=0.004"}}};
   for (const auto& [name, keys] : scenes) {
     INFO(name << " " << keys.back());
     const Course course = course_of(name, keys);
