@@ -80,8 +80,17 @@ std::string step_text_of(const WaveMaker& w, double step) {
                      w.period / step, kFewSteps, w.period / kFewSteps);
 }
 
-std::string settings_text(const Scene& s) {
-  if (s.solver.levels != LevelsMode::off) return "";
+std::string settings_text(const Scene& s, const WaveMaker& w) {
+  if (s.solver.levels != LevelsMode::off) {
+    WaveMaker best = w;
+    best.smoothing_ratio = 2;
+    const double loss = w.loss(s.fluid.spacing), least = best.loss(s.fluid.spacing);
+    if (!(loss > 0.02 && loss > 1.5 * least)) return "";
+    return fmt::format(
+        "waves lose about {:.2g} % of their height per wavelength with h = {:g} d, {:.2g} % with "
+        "fluid.smoothing_ratio 2 (configs/SETTINGS.md)",
+        100 * loss, s.fluid.smoothing_ratio, 100 * least);
+  }
   return "without solver.levels waves lose height and run too fast; for waves give "
          "solver: {iterations: 1, substeps: 7, levels: on} (configs/SETTINGS.md)";
 }
@@ -138,7 +147,7 @@ std::vector<Warning> wave_warnings(const Scene& s) {
     add(1, theory_text(w, *o.motion));
     add(2, resolution_text(w, s.fluid.spacing));
     add(3, step_text_of(w, s.time.step));
-    if (list[4].text.empty()) add(4, settings_text(s));
+    if (list[4].text.empty()) add(4, settings_text(s, w));
     add(5, returns_text(s, w));
     add(6, sponge_text(s, w));
   }
