@@ -2,6 +2,7 @@
 defaults, and every scene of the gallery says which row it follows."""
 
 import csv
+import json
 import re
 import subprocess
 import sys
@@ -185,3 +186,17 @@ def test_every_row_has_a_heading_that_the_front_page_and_the_scenes_lead_to(ever
     assert "(SETTINGS.md" in (ROOT / "configs/README.md").read_text()
     headings = re.findall(r"^## (.*)$", page.PAGE.read_text(), re.MULTILINE)
     assert [r.title for r in every] == headings[:len(every)]
+
+
+@pytest.mark.parametrize("scene, row", [("tank_at_rest", "still_tank"), ("wave_maker", "waves"),
+                                        ("sloshing_tank", "sloshing"), ("dam_break", "dam_break"),
+                                        ("validation/dam_break_over_box", "impact_loads"),
+                                        ("stirrer", None)])
+def test_the_plan_names_the_row_of_a_scene(every, pbf, scene, row):
+    path = ROOT / f"configs/{scene}.yaml"
+    plan = [subprocess.run([pbf, "plan", path, *how], capture_output=True, text=True, check=True).stdout
+            for how in ([], ["--json"])]
+    assert json.loads(plan[1])["settings_row"] == row
+    titles = [r.title for r in every if r.name == row]
+    said = re.findall(r'settings for such scenes: "(.*)" of configs/SETTINGS.md', plan[0])
+    assert said == titles and len(said) == (row is not None)
