@@ -93,12 +93,11 @@ def test_the_wave_that_a_paddle_is_to_make_is_that_of_the_theory(pbf, tmp_path, 
     theory = script("theory")
     eta = theory.regular(0.06, 2, 0.3) if scene == "regular_waves" else theory.solitary(0.045, 0.15)
     names = [name for name in told if name.startswith("eta_")]
-    assert len(names) >= 4
+    assert len(names) >= 4 and max(np.ptp(told[name]) for name in names) > 0.005
     for name in names:
         x = 3.311 if name == "eta_crest_m" else int(name[5:7]) / 10
         expected = np.array([eta(x, t) for t in told["t"]])
         assert np.allclose(told[name], expected, atol=1e-7), name
-        assert np.ptp(expected) > 0.001
 
 
 def test_the_tables_of_the_page_are_those_of_the_csv():
