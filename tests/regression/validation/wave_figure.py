@@ -82,6 +82,8 @@ def draw(path):
     gauges(axes[3], "waves_over_bar", table(DATA / "beji_battjes_1993_bar.csv"), "{}_t_s", OVER_BAR,
            (33, 39), "bar")
     for row in axes:
+        low, high = row[0].get_ylim()
+        row[0].set_ylim(low, high + 0.3 * (high - low))  # above the curves there is the legend
         row[0].legend(fontsize=7, loc="upper right")
         for ax in row:
             ax.title.set_fontsize(9)
