@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, drawn
 
 import pbf_tools
 
@@ -106,6 +106,13 @@ def test_the_tables_of_the_page_are_those_of_the_csv():
     assert rows.page(text, found) == text
     changed = [row | {"run": "0.123"} for row in found]
     assert rows.page(text, changed) != text
+
+
+def test_the_picture_of_waves_is_drawn_from_the_committed_readings(tmp_path):
+    done = subprocess.run([sys.executable, COMPARE.parent / "wave_figure.py", tmp_path / "a.png"],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert drawn(tmp_path / "a.png")
 
 
 def test_rows_of_a_run_are_what_it_has_compared_and_its_surface(pbf, tmp_path):

@@ -1,4 +1,7 @@
-"""Draws the readings of waves in this folder beside theory and experiments: waves_beside_data.png."""
+"""Draws the readings of waves in this folder beside theory and experiments, to waves_beside_data.png.
+
+Usage: python3 tests/regression/validation/wave_figure.py [FILE]
+"""
 
 import csv
 import pathlib
