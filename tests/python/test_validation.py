@@ -1,4 +1,4 @@
-"""Scenes of configs/validation, and the scripts of tests/regression/validation that read their runs."""
+"""Scenes of configs/validation, and the scripts of tests/regression/validation for their runs."""
 
 import importlib.machinery
 import importlib.util
@@ -58,8 +58,10 @@ def script(name):
     """A script of tests/regression/validation, whose name has no .py, as a module."""
     sys.path.insert(0, str(COMPARE.parent))
     try:
-        loader = importlib.machinery.SourceFileLoader(f"validation_{name}", str(COMPARE.parent / name))
-        module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
+        loader = importlib.machinery.SourceFileLoader(f"validation_{name}",
+                                                      str(COMPARE.parent / name))
+        spec = importlib.util.spec_from_loader(loader.name, loader)
+        module = importlib.util.module_from_spec(spec)
         loader.exec_module(module)
         return module
     finally:
@@ -87,8 +89,8 @@ def test_the_theory_beside_waves_is_that_of_its_script(tmp_path):
     ("solitary_run_up", ("fluid.spacing=0.015", "time.motion_begin=2.6", "time.end=0.6"))])
 def test_the_wave_that_a_paddle_is_to_make_is_that_of_the_theory(pbf, tmp_path, scene, words):
     sets = [x for w in (*words, "time.step=0.01", "compare=[]") for x in ("--set", w)]
-    subprocess.run([pbf, "run", SCENES / f"{scene}.yaml", "--quiet", "--out", tmp_path / "run", *sets],
-                   check=True, capture_output=True)
+    subprocess.run([pbf, "run", SCENES / f"{scene}.yaml", "--quiet", "--out", tmp_path / "run",
+                    *sets], check=True, capture_output=True)
     told = pbf_tools.read_csv(tmp_path / "run/waves_paddle.csv")
     theory = script("theory")
     eta = theory.regular(0.06, 2, 0.3) if scene == "regular_waves" else theory.solitary(0.045, 0.15)

@@ -1,4 +1,4 @@
-"""Draws the readings of waves in this folder beside theory and experiments, to waves_beside_data.png.
+"""Draws the readings of waves in this folder beside theory and data, to waves_beside_data.png.
 
 Usage: python3 tests/regression/validation/wave_figure.py [FILE]
 """
@@ -61,7 +61,8 @@ def profiles(axes):
         ax.plot(x, found["eta_over_d"][part], "k.", ms=3, label="experiment")
         ax.plot(x, found["run_eta_over_d"][part], color="tab:blue", lw=1, label="pbf")
         ax.plot([0, 32], [-1, 32 / 19.85 - 1], color="0.6", lw=1)
-        ax.set(title=f"run-up, T = {when}", xlim=(8, 32), ylim=(-0.1, 0.55), xlabel="x/D from the toe")
+        ax.set(title=f"run-up, T = {when}", xlim=(8, 32), ylim=(-0.1, 0.55),
+               xlabel="x/D from the toe")
     axes[0].set_ylabel("surface over D")
 
 

@@ -70,8 +70,8 @@ def surface(x, place, d):
 
 
 def profiles(run):
-    """T, x/D from the shoreline and eta/D of the run and of the data, at the places of Synolakis (1987)
-    and the frames next to his times."""
+    """T, x/D from the shoreline and eta/D of the run and of the data, at the places that Synolakis
+    (1987) has read, in the frames next to his times."""
     depth, toe = 0.15, 4.0
     d = float(run.info["spacing"])
     time, level = run.gauges["crest"]
@@ -90,7 +90,8 @@ def run_up(run):
     """The largest run-up, beside the law that Synolakis (1987) has fitted to waves that break, and
     the surface at the times of his profiles."""
     depth, height = 0.15, 0.045
-    yield ("beach", "run_up_over_depth", "1", waves.run_up(run, "beach", level=depth).highest / depth,
+    found = waves.run_up(run, "beach", level=depth)
+    yield ("beach", "run_up_over_depth", "1", found.highest / depth,
            1.109 * (height / depth) ** 0.582)
     for when, _, eta, data in profiles(run):
         name, there = f"T{when:g}", np.isfinite(eta)
