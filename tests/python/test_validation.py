@@ -72,6 +72,7 @@ def script(name):
 def test_a_plan_of_these_scenes_warns_of_nothing_but_what_they_say_themselves(pbf, scene):
     done = subprocess.run([pbf, "plan", scene, "--json"], capture_output=True, text=True, check=True)
     said = [warning["kind"] for warning in json.loads(done.stdout)["warnings"]]
+    said = [kind for kind in said if kind != "wave_settings"]  # advice: tests/unit
     assert said == {"regular_waves_order_1": ["wave_theory"],
                     "waves_over_bar": ["wave_resolution"]}.get(scene.stem, [])
 
@@ -108,6 +109,16 @@ def test_the_tables_of_the_page_are_those_of_the_csv():
     assert rows.page(text, found) == text
     changed = [row | {"run": "0.123"} for row in found]
     assert rows.page(text, changed) != text
+
+
+def test_rows_of_a_new_run_take_the_place_of_those_of_its_scene_and_spacing(tmp_path):
+    rows = script("rows")
+    old, table = rows.of_run(rows.TABLE), tmp_path / "new.csv"
+    new = [["waves_over_bar", "0.005", "G4", "harmonic_1", "m", "0.0123", "0.0126"]]
+    rows.write(table, new)
+    found = rows.replaced(old, rows.of_run(table))
+    assert found[-1] == new[0]
+    assert found[:-1] == [row for row in old if row[:2] != new[0][:2]] != old
 
 
 def test_the_picture_of_waves_is_drawn_from_the_committed_readings(tmp_path):
