@@ -53,13 +53,15 @@ def summary(every, lines):
 def block(case, lines):
     """The table of a case: a row for each setting, the advice in bold, a column for each figure."""
     head = [f"{f.name}{', ' + f.unit if f.unit else ''}" for f in case.figures]
-    out = [f"**{case.name}**: {case.text}.", "", "| settings | " + " | ".join(head) + " |",
-           "|---" * (len(head) + 1) + "|"]
+    out = [f"**{case.name}**: {case.text}.", "", "| settings | " + " | ".join(head) + " | starts |",
+           "|---" * (len(head) + 2) + "|"]
     for k, setting in enumerate(case.settings):
-        values = {x["figure"]: shown(x) for x in of(lines, case, setting["name"])}
+        mine = of(lines, case, setting["name"])
+        values = {x["figure"]: shown(x) for x in mine}
         name = setting["name"] if k else f"**{setting['name']}**"
         cells = [values.get(f.name, "–") for f in case.figures]
-        out.append(f"| {name} | " + " | ".join(cells) + " |")
+        starts = mine[0]["starts"] if mine else "–"
+        out.append(f"| {name} | " + " | ".join(cells) + f" | {starts} |")
     return out + [""]
 
 
