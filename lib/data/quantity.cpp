@@ -125,9 +125,12 @@ Quantity quantity_of(const Comparison& c, const Readings& readings, const std::s
 }
 
 QuantitySeries read_quantity(const RunReader& file, const Quantity& q) {
-  const RunColumn own = file.column(q.path);
+  return series_of(file.column(q.path), file.column(time_path(q.path)), q);
+}
+
+QuantitySeries series_of(const RunColumn& own, const RunColumn& time, const Quantity& q) {
   QuantitySeries out;
-  out.time = file.column(q.path.substr(0, q.path.find('/')) + "/time").values;
+  out.time = time.values;
   for (std::size_t k = 0; k < out.time.size(); ++k) {
     const std::size_t at = k * std::size_t(own.components) + std::size_t(q.component);
     if (at >= own.values.size()) break;
@@ -136,6 +139,8 @@ QuantitySeries read_quantity(const RunReader& file, const Quantity& q) {
   out.time.resize(out.value.size());
   return without_start(std::move(out), q);
 }
+
+std::string time_path(const std::string& path) { return path.substr(0, path.find('/')) + "/time"; }
 
 QuantitySeries without_start(QuantitySeries series, const Quantity& q) {
   // A mean over no time is stored as 0.

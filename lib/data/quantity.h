@@ -41,11 +41,16 @@ struct Quantity {
 /// That of an entry of `compare`. Throws Error(bad_input) beginning with `key` if there is none.
 Quantity quantity_of(const Comparison& entry, const Readings& readings, const std::string& key);
 
+/// The path of the times of a reading: "gauges/time".
+std::string time_path(const std::string& path);
+
 /// Its readings in a run.
 struct QuantitySeries {
   std::vector<double> time, value;  ///< s, in its unit
 };
 QuantitySeries read_quantity(const RunReader& file, const Quantity& quantity);
+/// The same from the column of its path, and that of the times beside it.
+QuantitySeries series_of(const RunColumn& own, const RunColumn& time, const Quantity& quantity);
 /// Without the first number of means, which is over no time.
 QuantitySeries without_start(QuantitySeries series, const Quantity& quantity);
 

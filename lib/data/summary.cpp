@@ -61,12 +61,17 @@ double window_peak(std::span<const double> time, std::span<const double> impulse
 
 std::vector<double> summary_numbers(const RunReader& file,
                                     const std::vector<SummaryColumn>& columns, double from) {
-  std::map<std::pair<std::string, int>, QuantitySeries> read;
+  std::map<std::string, RunColumn> read;
+  const auto column = [&](const std::string& path) -> const RunColumn& {
+    const auto [at, fresh] = read.try_emplace(path);
+    if (fresh) at->second = file.column(path);
+    return at->second;
+  };
   std::vector<double> numbers;
   for (const SummaryColumn& c : columns) {
-    const auto [at, fresh] = read.try_emplace({c.path, c.component});
-    if (fresh) at->second = read_quantity(file, {c.path, c.component, {c.unit, 1, c.means}, {}});
-    numbers.push_back(number_of({at->second.time, at->second.value, c.means}, c.of, from));
+    const QuantitySeries s = series_of(column(c.path), column(time_path(c.path)),
+                                       {c.path, c.component, {c.unit, 1, c.means}, {}});
+    numbers.push_back(number_of({s.time, s.value, c.means}, c.of, from));
   }
   return numbers;
 }

@@ -108,8 +108,8 @@ TEST_CASE("a probe reads what the run read at these updates, to the precision of
   check_same(found.at("U_y_m_s"), component(velocity, 1), tolerance);
   check_same(found.at("U_z_m_s"), component(velocity, 2), tolerance);
   // The gate closes the whole section, so nothing is lost between frames.
-  check_same(found.at("Q_total_kg"), total, exact ? 1e-9 : 4.0);
-  CHECK(total.back() > 5);
+  check_same(found.at("Q_total_kg"), total, exact ? 1e-9 : 0.13);  // two particles at the plane
+  CHECK(total.back() > 2);
   CHECK(std::isnan(found.at("Q_kg_s")[0]));
   if (exact) check_same(found.at("Q_kg_s"), file.gauge("Q"), 1e-6, 1);
   // Data for a comparison: levels without scales, of a run and its own probe.
@@ -164,10 +164,7 @@ TEST_CASE("what a probe cannot read is one error with its place and the remedy")
   folder.write("s.yaml", probed_scene(true, kProbed, ", fields: [density]",
                                       "compare: []\nsummary: [gauge/H/max]\n"));
   REQUIRE(run_scene(folder, "a", {"--set", "time.end=0.06"}).code == 0);
-  REQUIRE(run_scene(folder, "one",
-                    {"--set", "output.every=1", "--set", "output.gauges_every=1", "--set",
-                     "time.end=0.005"})
-              .code == 0);
+  REQUIRE(run_scene(folder, "one", {"--max-walltime", "0.0001", "--set", "time.end=9"}).code == 75);
   const std::string h = "{name: H, kind: level, at: [0.1]}";
   const std::vector<std::pair<std::string, std::string>> mistakes{
       {"gauges:\n  - " + h +
@@ -177,7 +174,7 @@ TEST_CASE("what a probe cannot read is one error with its place and the remedy")
        "(their "
        "multipliers), as loads do, and no frame holds that; put the gauge into the scene"},
       {"gauges: [{name: F, kind: load, at: [0.1]}]\n",
-       "more.yaml:1:28: gauges[0].kind: load is not"},
+       "more.yaml:1:26: gauges[0].kind: \"load\" is not one of level, velocity, flow, pressure"},
       {"gauges: [{name: H, kind: level, at: [3]}]\n",
        "more.yaml:1:37: gauges[0].at: x is 3, outside the domain (x from 0 to 1 m); move the "
        "gauge"},
@@ -189,7 +186,7 @@ TEST_CASE("what a probe cannot read is one error with its place and the remedy")
       {"name: s\ngauges: [" + h + "]\n", "more.yaml:1:1: name: does not belong here; give gauges"},
       {"gauges: []\n", "gauges: has no gauge; give gauges alone"},
       {"gauges: on\n", "gauges: has no gauge; give gauges alone"},
-      {"- " + h + "\n", "is a list, no file of gauges; give gauges alone"}};
+      {"- " + h + "\n", "is a list of 1, no file of gauges; give gauges alone"}};
   for (const auto& [text, message] : mistakes) {
     folder.write("more.yaml", text);
     const Outcome o = probe_in(folder, {"a", "--gauges", "more.yaml", "-o", "never.csv"});

@@ -78,8 +78,8 @@ TEST_CASE("summary: what names no column is refused with the nearest, in its lin
   const auto refused = [](const std::string& summary, const std::string& text = kRead) {
     return parse_error(text + "summary: " + summary + "\n");
   };
-  CHECK(contains(refused("[gauge/H/max, gauge/H/maximum]"),
-                 "scene.yaml:11:10: summary: there is no column gauge/H/maximum; did you mean "
+  CHECK(contains(refused("[gauge/H/max, gauge/H/maks]"),
+                 "scene.yaml:11:10: summary: there is no column gauge/H/maks; did you mean "
                  "gauge/H/max?"));
   CHECK(contains(refused("[load/post/force_x/max]"), "did you mean load/post/force_x/m"));
   CHECK(contains(refused("[somewhere_else]"), "no column somewhere_else; there are gauge/H/max; "));
