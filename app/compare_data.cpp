@@ -63,21 +63,21 @@ std::vector<Comparison> entries(const CompareDataOptions& o) {
     return v.size() == 2 ? std::optional(Comparison::Span{v[0], v[1]}) : std::nullopt;
   };
   shared.between = span(o.between), shared.lag_range = span(o.lag_range);
-  const auto add = [&](const std::vector<std::string>& texts, std::string Comparison::*which,
-                       bool vector) {
+  const auto add = [&](const char* option, const std::vector<std::string>& texts,
+                       std::string Comparison::*which, bool vector) {
     for (const std::string& text : texts) {
       Comparison& c = all.emplace_back(shared);
       std::tie(c.*which, c.column) = parts(text);
-      c.place.text = text;
+      c.place.text = std::string(option) + " " + text;
       const std::size_t slash = (c.*which).rfind('/');
       if (!vector || slash == std::string::npos) continue;
       c.component = (c.*which).substr(slash + 1);
       (c.*which).resize(slash);
     }
   };
-  add(o.gauges, &Comparison::gauge, true);
-  add(o.loads, &Comparison::load, true);
-  add(o.logs, &Comparison::log, false);
+  add("--gauge", o.gauges, &Comparison::gauge, true);
+  add("--load", o.loads, &Comparison::load, true);
+  add("--log", o.logs, &Comparison::log, false);
   if (all.empty())
     throw Error(ExitCode::bad_input,
                 "--data " + o.data +

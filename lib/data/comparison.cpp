@@ -167,19 +167,24 @@ std::vector<DataComparison> read_comparisons(const std::vector<Comparison>& entr
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const Comparison& c = entries[k];
     const std::string place = c.place.text.empty() ? "" : c.place.text + ": ",
-                      entry = place + "compare[" + std::to_string(k) + "]";
+                      entry = by_options(c) ? c.place.text
+                                            : place + "compare[" + std::to_string(k) + "]",
+                      data = by_options(c) ? "--data" : entry + ".data";
     const Quantity own = quantity_of(c, readings, entry);
-    all.push_back({c, own, read_measured(c, own, folder, entry + ".data")});
+    all.push_back({c, own, read_measured(c, own, folder, data)});
     SeriesOptions o = options_of(c);
     const std::vector<double> whole{0, end}, zero{0, 0};
     o.lag = likely_lag(c, entries);
     const CommonTimes n = common_times({whole, zero}, all.back().data.series(), o);
     if (!enough_points(n.common, n.times))
-      bad_input(entry + ".data",
+      bad_input(data,
                 fmt::format("{}: {} of its {} measured times lie within the run (0 to {:.6g} s); "
-                            "at least {} and half of them are needed: give between: [from, to], "
-                            "another time_scale or a longer run, or leave it out (compare: [])",
-                            c.data, n.common, n.times, end, kFewestPoints));
+                            "at least {} and half of them are needed: give {}, another {} or a "
+                            "longer run{}",
+                            c.data, n.common, n.times, end, kFewestPoints,
+                            by_options(c) ? "--between FROM,TO" : "between: [from, to]",
+                            key_word(c, "time_scale"),
+                            by_options(c) ? "" : ", or leave it out (compare: [])"));
   }
   return all;
 }

@@ -111,9 +111,9 @@ class TableReader {
       return c_.time_scale.value_or(named.unit->factor);
     if (c_.time_scale) return *c_.time_scale;
     if (is_time(column)) return 1;
-    fail(rows_[0].where, "column " + column +
-                             " has no unit of time; give time_scale, the seconds of one unit, or "
-                             "time_column: NAME for another column");
+    fail(rows_[0].where, "column " + column + " has no unit of time; give " +
+                             key_word(c_, "time_scale") + ", the seconds of one unit, or " +
+                             key_word(c_, "time_column") + " and the name of another column");
   }
 
   double value_factor(const std::string& column) const {
@@ -122,15 +122,15 @@ class TableReader {
     if (c_.scale) return *c_.scale;
     if (named.unit && unit == named.unit->unit) return named.unit->factor;
     if (named.unit)
-      fail(rows_[0].where,
-           fmt::format("column {} is in {}, and {} is in {}; name another column, "
-                       "or give scale, the {} of one {}",
-                       column, named.unit->ending + 1, q_.names[0], unit, unit, named.unit->unit));
+      fail(rows_[0].where, fmt::format("column {} is in {}, and {} is in {}; name another column, "
+                                       "or give {}, the {} of one {}",
+                                       column, named.unit->ending + 1, q_.names[0], unit,
+                                       key_word(c_, "scale"), unit, named.unit->unit));
     if (unit == "1") return 1;
     fail(rows_[0].where,
-         fmt::format("column {} has no unit; end its name in one ({}{}), or give scale, the {} of "
+         fmt::format("column {} has no unit; end its name in one ({}{}), or give {}, the {} of "
                      "one unit",
-                     column, column, unit_ending(unit), unit));
+                     column, column, unit_ending(unit), key_word(c_, "scale"), unit));
   }
 
   const Comparison& c_;

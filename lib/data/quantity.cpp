@@ -83,6 +83,13 @@ Readings readings_of(const RunReader& file) {
           }};
 }
 
+std::string key_word(const Comparison& entry, const std::string& key) {
+  if (!by_options(entry)) return key;
+  std::string word = "--" + key;
+  std::ranges::replace(word, '_', '-');
+  return word;
+}
+
 Quantity quantity_of(const Comparison& c, const Readings& readings, const std::string& key) {
   Quantity q;
   if (!c.gauge.empty()) {
@@ -108,8 +115,9 @@ Quantity quantity_of(const Comparison& c, const Readings& readings, const std::s
       if (path.starts_with(of)) words.push_back(path.substr(of.size()));
     const std::string wanted = q.path.substr(of.size()), near = nearest_word(wanted, words);
     bad_input(key, (of == kGauge ? "no gauge is named " : "the log has no column ") + wanted +
-                       (near.empty() ? "; there are " + first_of(words)
-                                     : "; did you mean " + near + "?"));
+                       (words.empty()  ? "; the run has none"
+                        : near.empty() ? "; there are " + first_of(words)
+                                       : "; did you mean " + near + "?"));
   }
   q.site = *site;
   if (q.site.components == 1 && !c.gauge.empty() && !c.component.empty())

@@ -38,6 +38,10 @@ struct Quantity {
   /// How a column of a table is named that holds it, without its unit: "U_x"; "load_post_x", ...
   std::vector<std::string> names;
 };
+/// Whether an entry was given by options, whose place is then "--gauge H2=H2_m".
+inline bool by_options(const Comparison& entry) { return entry.place.text.starts_with("--"); }
+/// How a key of an entry is written: time_scale in a scene, --time-scale as an option.
+std::string key_word(const Comparison& entry, const std::string& key);
 /// That of an entry of `compare`. Throws Error(bad_input) beginning with `key` if there is none.
 Quantity quantity_of(const Comparison& entry, const Readings& readings, const std::string& key);
 

@@ -129,7 +129,7 @@ def test_a_velocity_is_compared_by_component(gauged, compared, tools, tmp_path):
 
 
 @pytest.mark.parametrize("head, words, text", [
-    ("t_over_T,H", (), "column t_over_T has no unit of time; give time_scale, the seconds of one "
+    ("t_over_T,H", (), "column t_over_T has no unit of time; give --time-scale, the seconds of one "
                        "unit"),
     ("T,H", (), "column T has no unit of time"), ("H_m,t", ("--time-column", "H_m"),
                                                   "column H_m has no unit of time"),
