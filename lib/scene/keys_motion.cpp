@@ -81,9 +81,9 @@ KeyRows motion_rows() {
            "Viscosity and vorticity act once per update."),
        key(KEY(solver.levels), one_of({"off", "auto", "on"}),
            "Corrects the density on a hierarchy of grids coarser than h in every iteration, so "
-           "that the compression does not grow with the depth of the fluid. In flows use one "
-           "iteration per substep: more of them raise the energy. auto: on from 64 layers of "
-           "particles."),
+           "that the compression does not grow with the depth of the fluid. configs/SETTINGS.md "
+           "says "
+           "when to use them. auto: on from 64 layers of particles."),
        key(KEY(solver.method), one_of({"jacobi", "chebyshev"}),
            "jacobi: every iteration with omega = sor. chebyshev: omega follows Chebyshev's steps "
            "for "
