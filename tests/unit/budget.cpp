@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2490},        {"kernels", 7720},  {"lib/base", 1850},   {"lib/campaign", 3990},
-    {"lib/data", 1220},   {"lib/exec", 6900}, {"lib/io", 4240},     {"lib/program", 9430},
-    {"lib/render", 3950}, {"lib/run", 6420},  {"lib/scene", 10240}, {"lib/solver", 3070},
+    {"app", 2570},        {"kernels", 7740},  {"lib/base", 1850},   {"lib/campaign", 4060},
+    {"lib/data", 1590},   {"lib/exec", 6900}, {"lib/io", 4240},     {"lib/program", 9580},
+    {"lib/render", 3950}, {"lib/run", 6420},  {"lib/scene", 10550}, {"lib/solver", 3070},
     {"lib/verify", 2160},
 };
 constexpr int kLongestFile = 300;
