@@ -174,7 +174,8 @@ TEST_CASE("what a probe cannot read is one error with its place and the remedy")
        "(their "
        "multipliers), as loads do, and no frame holds that; put the gauge into the scene"},
       {"gauges: [{name: F, kind: load, at: [0.1]}]\n",
-       "more.yaml:1:26: gauges[0].kind: \"load\" is not one of level, velocity, flow, pressure"},
+       "more.yaml:1:26: gauges[0].kind: \"load\" is not one of level, line, velocity, flow, "
+       "pressure"},
       {"gauges: [{name: H, kind: level, at: [3]}]\n",
        "more.yaml:1:37: gauges[0].at: x is 3, outside the domain (x from 0 to 1 m); move the "
        "gauge"},

@@ -14,11 +14,11 @@ inline const std::string kRegular =
 
 inline std::string flume_text(const std::string& motion) {
   return "dimensions: 2\n"
-         "domain: {min: [0, 0, 0], max: [8, 0.02, 0.6]}\n"
+         "domain: {min: [0, 0, 0], max: [8, 0.01, 0.6]}\n"
          "fluid: {spacing: 0.01}\n"
-         "bodies: [{shape: block, min: [0.2, 0, 0], max: [8, 0.02, 0.3]}]\n"
+         "bodies: [{shape: block, min: [0.2, 0, 0], max: [8, 0.01, 0.3]}]\n"
          "obstacles:\n"
-         "  - {name: paddle, shape: box, min: [-0.3, 0, 0], max: [0.2, 0.02, 0.6],\n"
+         "  - {name: paddle, shape: box, min: [-0.3, 0, 0], max: [0.2, 0.01, 0.6],\n"
          "     motion: {" +
          motion +
          "}}\n"

@@ -28,7 +28,8 @@ TEST_CASE("settings: what falls, moves, rests or makes waves has its row of the 
   CHECK(row_of(flume(kRegular)) == "waves");
   CHECK(row_of("", {wide}) == "still_tank");
   CHECK(row_of("", {wide, "fluid.spacing=0.01"}) == "deep_tank");
-  CHECK(row_of("", {wide, "tank_motion={amplitude: 5, period: 1, axis: [0, 1, 0]}"}) == "sloshing");
+  CHECK(row_of("", {wide, "tank_motion={kind: sine, amplitude: 5, period: 1, axis: [0, 1, 0]}"}) ==
+        "sloshing");
   CHECK(row_of("", {wide, "settle={gravity: [0.5, 0, -9.8]}"}) == "standing_wave");
   CHECK(row_of("", {column}) == "dam_break");
   CHECK(row_of("", {column, post}) == "impact_loads");

@@ -6,6 +6,7 @@
 #include "lib/render/camera.h"
 #include "lib/render/quantile_range.h"
 #include "lib/run/emit.h"
+#include "lib/run/linked_files.h"
 #include "lib/scene/load.h"
 #include "lib/solver/solver.h"
 #include "tests/support/render_support.h"
@@ -21,7 +22,8 @@ struct Course {
 };
 
 Course course_of(const std::string& name, std::vector<std::string> keys) {
-  const Scene scene = load_scene(PBF_SOURCE_DIR "/configs/" + name + ".yaml", keys).scene;
+  Scene scene = load_scene(PBF_SOURCE_DIR "/configs/" + name + ".yaml", keys).scene;
+  read_linked_files(scene, PBF_SOURCE_DIR "/configs");
   Particles particles = emit_particles(scene, ".");
   const auto count = static_cast<std::int64_t>(particles.size());
   const auto solver = make_solver(scene, make_plan(scene, count), std::move(particles));

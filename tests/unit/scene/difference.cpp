@@ -16,8 +16,8 @@ TEST_CASE("scene difference: exactly these keys leave the results of a run alone
     if (key.effect == Effect::none) none.push_back(key.path);
     if (key.effect == Effect::adaptive) adaptive.push_back(key.path);
   }
-  CHECK(none == std::vector<std::string>{"name", "time.end", "solver.reproducible",
-                                         "checkpoint.every", "backend", "threads"});
+  CHECK(none == std::vector<std::string>{"name", "time.end", "solver.reproducible", "summary_from",
+                                         "summary", "checkpoint.every", "backend", "threads"});
   CHECK(adaptive == std::vector<std::string>{"guard.speed", "guard.energy", "guard.neighbors"});
 }
 

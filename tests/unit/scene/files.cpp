@@ -3,6 +3,7 @@
 #include <set>
 
 #include "lib/run/emit.h"
+#include "lib/run/linked_files.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -62,8 +63,9 @@ TEST_CASE("shipped scenes: every one is valid and makes particles inside its dom
     const std::string text = read_file(entry.path().string());
     CHECK(text.rfind("# ", 0) == 0);    // says what it shows
     CHECK(contains(text, "pbf run "));  // and how to run it
-    const Scene s = load_scene(entry.path().string(), {}).scene;
+    Scene s = load_scene(entry.path().string(), {}).scene;
     CHECK(parse(resolved_yaml(s)) == s);
+    read_linked_files(s, entry.path().parent_path().string());
     const std::string dir = entry.path().parent_path().string();
     const Particles p = emit_particles(s, dir);
     CHECK(static_cast<std::int64_t>(p.size()) == count_particles(s, dir));

@@ -76,7 +76,7 @@ TEST_CASE("wave makers: what is missing, misplaced or contradicts is named with 
 
 TEST_CASE("wave makers: only a box makes waves") {
   std::string text = flume_text(kRegular);
-  const std::string box = "shape: box, min: [-0.3, 0, 0], max: [0.2, 0.02, 0.6]";
+  const std::string box = "shape: box, min: [-0.3, 0, 0], max: [0.2, 0.01, 0.6]";
   text.replace(text.find(box), box.size(), "shape: sphere, center: [0.1, 0.01, 0.3], radius: 0.1");
   CHECK(contains(parse_error(text),
                  "obstacles[0].shape: a wave maker is a box; give that, or its motion as a table"));
