@@ -133,7 +133,7 @@ class Batch {
   int finish() {
     const BatchSummary summary = batch_summary(
         members_, ends_, out_, [this](const BatchMember& m) { return loaded(m).scene; });
-    if (!summary.note.empty()) log_.note("pbf: " + summary.note);
+    if (!summary.note.empty()) log_.warning(summary.note);
     write_text_file(out_ + "/summary.csv", summary.csv(), Naming::own);
     write_text_file(out_ + "/summary.json", summary.json(), Naming::own);
     std::size_t finished = 0, failed = 0;

@@ -20,11 +20,13 @@ struct ProbeOptions {
 };
 
 const char* const kProbeHelp =
-    "Kinds level, velocity and flow of gauges (configs/README.md, \"Gauges\"), as in a scene:\n"
+    "Kinds level, line, velocity and flow of gauges (configs/README.md, \"Gauges\"), as in a "
+    "scene:\n"
     "  gauges: [{name: H2, kind: level, at: [2.2, 0.5]}]\n"
     "A row per frame; columns have their units in their names (H2_m, U_x_m_s, Q_kg_s, "
     "Q_total_kg),\n"
-    "so the table is data for `compare` and pbf compare-data. Levels and velocities are what the "
+    "so the table is data for `compare` and pbf compare-data. Levels, lines and velocities are "
+    "what the "
     "run\n"
     "itself would have read at these updates, to the precision of the frames. A flow is the net "
     "mass\n"

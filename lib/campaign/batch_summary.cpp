@@ -186,10 +186,8 @@ NamedColumns reading_columns_of(const std::vector<Results>& results, bool& too_m
     all.take(r.readings, true);
     if (r.named) named.take(r.readings, true);
   }
-  const bool more =
-      all.names().size() > kMostSummaryColumns && named.names().size() < all.names().size();
-  too_many = more || std::ranges::any_of(results, &Results::too_many);
-  return more ? named : all;
+  too_many = all.names().size() > kMostSummaryColumns && named.names().size() < all.names().size();
+  return too_many ? named : all;
 }
 
 }  // namespace
@@ -249,11 +247,17 @@ BatchSummary batch_summary(const std::vector<BatchMember>& members,
     table.add(row);
   }
   BatchSummary summary{table, {}, {}};
+  const auto alone = std::ranges::count_if(results, &Results::too_many);
   if (too_many)
     summary.note = fmt::format(
         "gauges and loads would be more than {} columns of summary.csv, and only those are there "
         "that scenes name in their key summary",
         kMostSummaryColumns);
+  else if (alone > 0)
+    summary.note = fmt::format(
+        "the gauges and loads of {} of {} runs would be more than {} columns of summary.csv each, "
+        "and are left out; name the wanted ones in the key summary of their scenes",
+        alone, members.size(), kMostSummaryColumns);
   for (const std::string& c : columns)
     if (const std::string& unit = units[c]; !unit.empty() && unit != "1")
       summary.units.emplace_back(c, unit);

@@ -1,5 +1,6 @@
 #include "lib/data/probe.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lib/base/error.h"
@@ -154,11 +155,17 @@ Scene scene_with_gauges(const RunInfo& info, const std::string& path, const std:
   constexpr const char* kForm = "; give gauges alone: gauges: [{name: H, kind: level, at: [1]}]";
   if (given.kind != Node::Kind::map)
     bad_input(given.place(), "is " + given.shown() + ", no file of gauges" + kForm);
-  for (const Node& key : given.keys)
+  for (const Node& key : given.keys) {
     if (key.text != "gauges")
       bad_input(key.place() + ": " + key.text, std::string("does not belong here") + kForm);
+    if (&key != given.keys.data())
+      bad_input(key.place() + ": " + key.text,
+                "given twice, first at " + given.keys[0].place() + "; remove one");
+  }
   const Node* list = given.find("gauges");
-  if (!list || list->kind != Node::Kind::list || list->items.empty())
+  if (list && list->kind != Node::Kind::list)
+    bad_input(list->place() + ": gauges", "is " + list->shown() + ", expected a list" + kForm);
+  if (!list || list->items.empty())
     bad_input((list ? *list : given).place() + ": gauges", std::string("has no gauge") + kForm);
   Node root = tree_of_text(info.resolved_scene, path + ": its scene", "scene");
   use_new_names(scene_table(), root);

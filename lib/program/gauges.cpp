@@ -95,10 +95,10 @@ PlannedGauge<ProbeTally> planned(const gauge_keys::Level& g, const Frame& frame)
 }
 
 PlannedGauge<ProbeTally> planned(const gauge_keys::Line& g, const Frame& frame) {
-  PlannedGauge<ProbeTally> gauge{.place = text(g.from) + " to " + text(g.to) + " m"};
   const Scene& s = frame.s;
   Double3 from = g.from, to = g.to;
   if (s.dimensions == 2) from[1] = to[1] = *s.plane();
+  PlannedGauge<ProbeTally> gauge{.place = text(from) + " to " + text(to) + " m"};
   frame.place(from, gauge.site.from);
   frame.direction(unit(to - from), gauge.site.direction);
   gauge.site.axis = Probe::inclined;

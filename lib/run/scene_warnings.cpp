@@ -221,6 +221,11 @@ std::string output_text(const Scene& s) {
   if (double(s.measure_every) * s.time.step > run)
     add("measure_every", s.measure_every * s.time.step,
         "the guard looks at the start and the end alone");
+  if (s.summary_from > 0 && s.summary_from >= s.time.end)
+    texts.push_back(fmt::format(
+        "summary_from {:g} s is not before the end of the run (time.end {:g} s): the summary of a "
+        "batch has nothing of gauges and loads",
+        s.summary_from, s.time.end));
   if (!s.output && !s.gauges.empty())
     texts.push_back(
         "gauges are written to run.vtkhdf, and there is no key output: nothing is kept of them; "

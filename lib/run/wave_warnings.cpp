@@ -100,13 +100,17 @@ std::string sponge_text(const Scene& s, const WaveMaker& w) {
   std::vector<std::string> texts;
   for (const WaveSponge& zone : wave_sponges(s, w)) {
     if (zone.from < 0.5 * w.length())
-      texts.push_back(fmt::format(
-          "the zone {} of damping begins {:.3g} m before it, closer than half a wavelength "
-          "({:.3g} m), and takes the waves as they are made; move it to the far end",
-          zone.name, zone.from, 0.5 * w.length()));
+      texts.push_back(
+          fmt::format("the zone {} of damping {}, closer than half a wavelength ({:.3g} m), and "
+                      "takes the waves "
+                      "as they are made; move it to the far end",
+                      zone.name,
+                      zone.from < 0 ? std::string("reaches behind it")
+                                    : fmt::format("begins {:.3g} m before it", zone.from),
+                      0.5 * w.length()));
     else if (zone.lengths < 0.5)
       texts.push_back(fmt::format(
-          "the zone {} of damping has {:.2g} of a wavelength and reflects about {:.2g} of the "
+          "the zone {} of damping has {:.2g} of a wavelength and reflects about {:.1g} of the "
           "height; half a wavelength ({:.3g} m) is the least, a whole one is better",
           zone.name, zone.lengths, zone.reflection, 0.5 * w.length()));
   }

@@ -60,9 +60,9 @@ class GaugeChecker : public SceneRules {
     if (!good(g.from, g.to) || !inside(g.from, g.from) || !inside(g.to, g.to)) return;
     Double3 way = g.to - g.from;
     if (flat()) way[1] = 0;
-    if (good(s_.fluid.spacing) && !(dot(way, way) >= s_.fluid.spacing * s_.fluid.spacing))
-      add(g.to, "is {} m from `from`, less than fluid.spacing; a line has two ends",
-          rounded(std::sqrt(dot(way, way))));
+    if (good(s_.fluid.spacing) && !(length(way) >= s_.fluid.spacing * (1 - 1e-9)))
+      add(g.to, "is {} m from `from`, less than fluid.spacing ({} m); move one of them away",
+          rounded(length(way)), s_.fluid.spacing);
   }
 
   void check(const gauge_keys::Velocity& g) {

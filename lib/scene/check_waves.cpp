@@ -16,7 +16,7 @@ class WaveChecker : public SceneRules {
 
  private:
   static constexpr double kMostLines = 1e5;
-  static constexpr double kMostSines = 2e10;  ///< some minutes
+  static constexpr double kMostSines = 2e9;  ///< half a minute
 
   template <class... T>
   bool fail(const auto& member, fmt::format_string<Shown<T>...> text, const T&... values) {

@@ -20,16 +20,21 @@ double sponge_reflection(double lengths, double rate, int profile) {
   const auto slope = [&](double s, const State& y) {
     return State{(iw + rate * std::pow(std::max(s, 0.0), profile)) * y.u, iw * y.e};
   };
-  constexpr int kSteps = 2000;
-  const double dx = lengths / kSteps;
+  // Beyond these a zone is a wall where it begins, or takes all.
+  rate = std::min(rate, 1e6), lengths = std::min(lengths, 100.0);
+  const double fastest = std::sqrt(std::abs(iw) * (std::abs(iw) + rate));  // 1/wavelength
+  const int steps = int(std::max(2000.0, std::ceil(2 * lengths * fastest)));
+  const double dx = lengths / steps;
   State y{1, 0};
-  for (int k = 0; k < kSteps; ++k) {
-    const auto at = [&](double part) { return 1 - (k + part) / kSteps; };
+  for (int k = 0; k < steps; ++k) {
+    const auto at = [&](double part) { return 1 - (k + part) / steps; };
     const auto plus = [&](const State& d, double x) { return State{y.e + x * d.e, y.u + x * d.u}; };
     const State a = slope(at(0), y), b = slope(at(0.5), plus(a, dx / 2)),
                 c = slope(at(0.5), plus(b, dx / 2)), d = slope(at(1), plus(c, dx));
     y.e += dx / 6 * (a.e + 2.0 * b.e + 2.0 * c.e + d.e);
     y.u += dx / 6 * (a.u + 2.0 * b.u + 2.0 * c.u + d.u);
+    const double size = std::abs(y.e) + std::abs(y.u);  // only the ratio counts
+    y.e /= size, y.u /= size;
   }
   // The incident wave has u = e, the reflected one u = -e.
   return std::abs(y.e - y.u) / std::abs(y.e + y.u);

@@ -186,7 +186,9 @@ TEST_CASE("what a probe cannot read is one error with its place and the remedy")
        "output.fields"},
       {"name: s\ngauges: [" + h + "]\n", "more.yaml:1:1: name: does not belong here; give gauges"},
       {"gauges: []\n", "gauges: has no gauge; give gauges alone"},
-      {"gauges: on\n", "gauges: has no gauge; give gauges alone"},
+      {"gauges: on\n", "gauges: is \"on\", expected a list; give gauges alone"},
+      {"gauges: [" + h + "]\ngauges: [" + h + "]\n",
+       "more.yaml:2:1: gauges: given twice, first at more.yaml:1:1"},
       {"- " + h + "\n", "is a list of 1, no file of gauges; give gauges alone"}};
   for (const auto& [text, message] : mistakes) {
     folder.write("more.yaml", text);

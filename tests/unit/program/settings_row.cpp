@@ -35,6 +35,28 @@ TEST_CASE("settings: what falls, moves, rests or makes waves has its row of the 
   CHECK(row_of("", {column, post}) == "impact_loads");
   CHECK(row_of("", {wide, post}) == "still_tank");
   CHECK(row_of("", {column, "gravity=[0, 0, 0]"}) == "none");
+  const auto blocks = [](const std::string& list) { return "bodies=[" + list + "]"; };
+  const std::string pool = "{shape: block, min: [0, 0, 0], max: [1, 1, 0.3]}",
+                    upper = "{shape: block, min: [0, 0, 0.3], max: [1, 1, 0.6]}",
+                    above = "{shape: block, min: [0, 0, 0.6], max: [1, 1, 0.9]}",
+                    ball = "{shape: sphere, center: [0.5, 0.5, 0.7], radius: 0.15}";
+  CHECK(row_of("", {blocks(above)}) == "dam_break");
+  CHECK(row_of("", {blocks(pool + "," + above)}) == "dam_break");
+  CHECK(row_of("", {blocks(pool + "," + ball)}) == "dam_break");
+  CHECK(row_of("", {blocks(pool + "," + upper)}) == "still_tank");
+  CHECK(row_of("", {blocks(pool + "," + upper), "fluid.spacing=0.0125"}) == "deep_tank");
+  CHECK(row_of("", {blocks(above), "gravity=[0, 0, 9.81]"}) == "dam_break");
+  CHECK(row_of("", {blocks("{shape: block, min: [0, 0, 0.5], max: [1, 1, 1]}"),
+                    "gravity=[0, 0, 9.81]"}) == "still_tank");
+  CHECK(row_of("", {wide, "settle={gravity: [0, 0, -5]}"}) == "still_tank");
+  CHECK(row_of("", {wide, "gravity=[3, 0, -9]"}) == "none");
+  // Beside a box that reaches out of the water, and over one that lies in it.
+  CHECK(row_of("", {blocks("{shape: block, min: [0.3, 0, 0], max: [1, 1, 0.5]}"),
+                    "obstacles=[{name: a, shape: box, min: [0, 0, 0], max: [0.3, 1, 1]}]"}) ==
+        "still_tank");
+  CHECK(row_of("", {wide,
+                    "obstacles=[{name: a, shape: box, min: [0.2, 0.2, 0], max: [0.6, 0.6, "
+                    "0.2]}]"}) == "still_tank");
 }
 
 TEST_CASE("settings: scenes that the page does not have get no row") {

@@ -244,6 +244,9 @@ TEST_CASE("intervals beyond the end of a run are named, each of them") {
   CHECK(kinds(s).empty());
   s.output->every = 1.5;
   CHECK(holds(text_of("output", s), "output.every 1.5 s is longer than the run"));
+  s.summary_from = 1;
+  CHECK(holds(text_of("output", s), "summary_from 1 s is not before the end of the run"));
+  s.summary_from = 0;
   s.render = Render{};
   s.render->every = 3;
   s.measure_every = 501;

@@ -114,7 +114,9 @@ TEST_CASE("gauges: a line has two ends in the domain, and a velocity enough room
   CHECK(contains(line("from: [0, 0.5, 0], to: [1, 0.5, 1.2]"),
                  "gauges[0].to: z is 1.2, outside the domain (z from 0 to 1 m); move the gauge"));
   CHECK(contains(line("from: [0.2, 0.5, 0.3], to: [0.2, 0.5, 0.3]"),
-                 "gauges[0].to: is 0 m from `from`, less than fluid.spacing; a line has two ends"));
+                 "gauges[0].to: is 0 m from `from`, less than fluid.spacing (0.1 m); move one of "
+                 "them away"));
+  CHECK(line("from: [0.1, 0.5, 0.1], to: [0.2, 0.5, 0.1]") == "no error");
   CHECK(contains(line("from: [0.2, 0, 0.3], to: [0.2, 0.1, 0.3]", kFlat), "is 0 m from `from`"));
   CHECK(contains(line("at: [0.2, 0.5]"), "gauges[0].at"));
   CHECK(contains(gauge_error("{name: a, kind: velocity, at: [0.1, 0.1, 0.1], within: 0.09}"),

@@ -53,6 +53,11 @@ TEST_CASE("a sponge reflects what linear theory of long waves says") {
   for (const auto& [lengths, share] : known)
     CHECK(sponge_reflection(lengths, 15, 2) == Approx(share).margin(0.005));
   CHECK(sponge_reflection(0, 15, 2) == 1);
+  // Strong ones become walls, long and weak ones let nothing come back.
+  CHECK(sponge_reflection(1, 1e6, 1) > 0.5);
+  CHECK(sponge_reflection(1, 1e12, 1) <= 1);
+  CHECK(sponge_reflection(340, 15, 2) < 1e-3);
+  CHECK(sponge_reflection(1e6, 15, 2) < 1e-3);
 }
 
 TEST_CASE("each mistake in a sponge is named with its remedy") {

@@ -68,7 +68,7 @@ TEST_CASE("wave makers: what is missing, misplaced or contradicts is named with 
   says(kSeaOf + ", repeat: 0.3", "obstacles[0].motion.repeat: makes 0 lines in the band");
   says(kSeaOf + ", repeat: 10800",
        "obstacles[0].motion.repeat: makes 18721 lines, and the motion has 1380000 rows: too many "
-       "sines to add up. Give 8346 s or less",
+       "sines to add up. Give 834 s or less",
        {"time.end=10800"});
   says(kFocus + "0.1",
        "obstacles[0].motion.place: is 0.1, and the paddle stands at 0.2; give a place ahead of it");
