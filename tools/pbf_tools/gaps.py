@@ -7,10 +7,11 @@ import numpy as np
 from .errors import BadInput, note
 from .table import Table
 
+# By column, or kind of gauge.
 _POOL = "only a pool has it: gravity along an axis, walls on all sides, no obstacles, " \
         "no tank_motion"
 WHY = {"height_kept": _POOL, "hydrostatic_deviation": _POOL,
-       "velocity": "no particle was within reach of this gauge (its key within, by default h)"}  # column, or kind of gauge
+       "velocity": "no particle was within reach of this gauge (its key within, by default h)"}
 
 
 def why(name: str) -> str:
