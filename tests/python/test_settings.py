@@ -205,7 +205,7 @@ def test_a_run_of_what_is_missing_leaves_the_other_lines_as_they_are(small, tmp_
     ("log: energy_rise", "lag: energy_rise", "rise: a figure has a name and one of log, gauge"),
     ("as: max, factor", "as: max, form: 1, factor", "small: rise: form: unknown key; there are add, as"),
     ("as: max, factor", "factor", "pool/small: rise: as is missing"),
-    ("call: iterations_per_second", "call: iterations", "steps: call: iterations: there are iterations_"),
+    ("call: iterations_per_second", "call: iterations", "steps: call: iterations: there are iterat"),
     ("call: iterations_per_second", "call: iterations_per_second, at: 1", "steps: at: unknown key"),
     ("bounds: [0, 9], reduced", "bounds: [9, 0], reduced", "rise: bounds is [LOW, HIGH]"),
     ("settings: [{name: default, set: {}}", "settings: [{name: default, sets: {}}", "sets: unknown key"),
