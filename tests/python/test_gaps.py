@@ -57,7 +57,7 @@ def test_a_gauge_without_fluid_is_told_with_the_number_of_readings(gapped, tools
     front = int(np.isnan(pbf_tools.open(gapped).gauges["front"].value[:, 0]).sum())
     assert code == 0 and 2 < front < 19
     notes = err.splitlines()
-    assert len(notes) == 2 and all("no particle was within h of this gauge" in n for n in notes)
+    assert len(notes) == 2 and all("no particle was within reach of this gauge (its key within, by" in n for n in notes)
     assert "note: far, wave: nothing to draw, nan in all 21 readings" in notes[0]
     assert f"note: front, wave: nan in {front} of 21 readings" in notes[1]
 

@@ -1,6 +1,7 @@
 """configs/SETTINGS.md: its tables are those of the CSV, which was measured with today's scenes and
 defaults, and every scene of the gallery says which row it follows."""
 
+import argparse
 import csv
 import json
 import re
@@ -14,6 +15,7 @@ yaml = pytest.importorskip("yaml")
 FOLDER = ROOT / "tests/regression/settings"
 sys.path.insert(0, str(FOLDER))
 import figures  # noqa: E402
+import measure  # noqa: E402
 import page  # noqa: E402
 import rows  # noqa: E402
 import table  # noqa: E402
@@ -118,7 +120,68 @@ def test_a_run_writes_means_and_half_ranges_and_tells_what_is_out_of_bounds(smal
     assert done.returncode == 1 and "steps is 2000" in done.stderr
     assert len(table.read(tmp_path / "out.csv")) == 2
     done = small("--only", "pond")
-    assert done.returncode == 1 and done.stderr == "run: --only pond: the rows are pool\n"
+    assert done.returncode == 2 and done.stderr == "run: --only pond: the rows are pool\n"
+
+
+def test_runs_that_are_left_out_are_told_and_end_with_1(small, tmp_path):
+    done = small("--reduced", "--seconds", "0")
+    assert done.returncode == 1 and table.read(tmp_path / "out.csv") == []
+    assert done.stdout == "left out: pool/small/0, start 0\n"
+    assert done.stderr == "run: 1 run left out after --seconds 0; --missing goes on\n"
+
+
+def test_scenes_are_hashed_as_they_are_before_the_first_run(every, monkeypatch, tmp_path):
+    told = []
+    monkeypatch.setattr(rows, "scene_sha256", lambda *_: told.append("hash") or "0")
+    monkeypatch.setattr(rows, "defaults_sha256", lambda *_: told.append("hash") or "0")
+    monkeypatch.setattr(measure, "run_of", lambda case, *_: told.append("run") or
+                        ([1.0] * len(case.figures), "a", 1.0))
+    given = argparse.Namespace(reduced=True, seconds=1e9, jobs=1, pbf="pbf")
+    lines, left_out = measure.all_of(every[:1], given, tmp_path)
+    assert told == ["hash", "hash", "run"] and lines and left_out == 0
+
+
+@pytest.mark.parametrize("words, told", [
+    (["nope", "out.csv"], "nope: no such program"),
+    (["PBF", "nope/out.csv"], "nope/out.csv: there is no folder nope"),
+    (["PBF", "out.csv", "--rows", "nope.yaml"], "nope.yaml: No such file or directory"),
+    (["PBF", "out.csv", "--rows", "list.yaml"], "list.yaml: has no keys; it needs rows"),
+    (["PBF", "out.csv", "--rows", "broken.yaml"], "broken.yaml: while parsing"),
+    (["PBF", "other.csv"], "other.csv: is no table of `run`, whose first line is row,case,"),
+    (["PBF", "out.csv", "--rows", "scene.yaml"], "pool/small: pbf: error: ")])
+def test_what_is_wrong_before_the_runs_is_told_in_one_line(pbf, tmp_path, words, told):
+    for name, text in {"list.yaml": "[1]", "broken.yaml": "rows: [", "other.csv": "a,b\n1,2\n",
+                       "scene.yaml": SMALL}.items():
+        (tmp_path / name).write_text(text)
+    done = subprocess.run([sys.executable, "-B", FOLDER / "run",
+                           *(str(pbf) if w == "PBF" else w for w in words)], cwd=tmp_path,
+                          capture_output=True, text=True)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.startswith(f"run: {told}") and done.stderr.count("\n") == 1
+
+
+def test_a_run_that_fails_has_its_reason_in_place_of_its_figures(small, tmp_path):
+    text = (tmp_path / "rows.yaml").read_text()
+    (tmp_path / "rows.yaml").write_text(text.replace(
+        "{solver.iterations: 2}", "{time.step: 0.02, time.end: 1, measure_every: 1, "
+        "solver.iterations: 1, solver.sor: 2}"))
+    small()
+    lines = table.read(tmp_path / "out.csv")[2:]
+    assert [x["value"] for x in lines] == ["stopped by the guard"] * 2
+    assert lines[0]["device"] and lines[0]["scatter"] == ""
+    assert page.shown(lines[0]) == "stopped by the guard"
+
+
+def test_reasons_name_the_exit_code_and_how_many_starts_have_failed(every):
+    said = measure.reason(5, "a\npbf: error: disk is full; make room\n")
+    assert said == "failed with 5: disk is full"
+    assert measure.reason(-9, "") == "failed with -9: no message"
+    case = every[0].cases[0]
+    runs = [([1.0] * len(case.figures), "GPU", 1.0), (said, "", 2.0)]
+    lines = list(table.lines_of(case, 0, case.settings[0], runs, "0", "0"))
+    assert {x["value"] for x in lines} == {"failed with 5: disk is full in 1 of 2 starts"}
+    assert lines[0]["device"] == "GPU" and "disk is full in 1 of 2" in page.block(case, lines)[4]
+    assert any("is failed with 5" in text for text in table.out_of_bounds(lines, every[:1]))
 
 
 def test_a_run_of_what_is_missing_leaves_the_other_lines_as_they_are(small, tmp_path):
@@ -140,6 +203,12 @@ def test_a_run_of_what_is_missing_leaves_the_other_lines_as_they_are(small, tmp_
     ("title: Pool", "titel: Pool", "titel: unknown key; there are advice, cases, name, title"),
     ("text: a pool\n", "\n", "pool/small: text is missing"),
     ("log: energy_rise", "lag: energy_rise", "rise: a figure has a name and one of log, gauge"),
+    ("as: max, factor", "as: max, form: 1, factor", "small: rise: form: unknown key; there are add, as"),
+    ("as: max, factor", "factor", "pool/small: rise: as is missing"),
+    ("call: iterations_per_second", "call: iterations", "steps: call: iterations: there are iterat"),
+    ("call: iterations_per_second", "call: iterations_per_second, at: 1", "steps: at: unknown key"),
+    ("bounds: [0, 9], reduced", "bounds: [9, 0], reduced", "rise: bounds is [LOW, HIGH]"),
+    ("settings: [{name: default, set: {}}", "settings: [{name: default, sets: {}}", "sets: unknown key"),
     ("reduced: {time.end: 0.02}", "", "no case has a reduced form")])
 def test_mistakes_in_the_rows_are_named(tmp_path, old, new, told):
     assert old in SMALL
@@ -154,7 +223,8 @@ def test_values_are_shown_as_far_as_their_scatter_lets_them_be_known():
     assert shown("0.04412", "0.0021") == "0.0441 ± 0.0021"
     assert shown("12.345", "1.2") == "12.3 ± 1.2" and shown("-0.0001", "0.4") == "0.00 ± 0.40"
     assert shown("-3.456", "0") == "−3.46" and shown("1600", "0") == "1600"
-    assert shown("nan", "nan") == "stopped by the guard" and shown("57.3", "12") == "57 ± 12"
+    assert shown("stopped by the guard", "") == "stopped by the guard"
+    assert shown("57.3", "12") == "57 ± 12"
 
 
 def test_a_standing_wave_of_known_decay_is_measured():
@@ -169,7 +239,7 @@ def test_a_standing_wave_of_known_decay_is_measured():
     assert found["period"] == pytest.approx(0.98, abs=0.003)
 
 
-def test_every_scene_of_the_gallery_names_its_row_or_says_why_not(every):
+def test_every_scene_of_the_gallery_has_the_settings_of_its_row_or_says_why_not(every, pbf):
     gallery = (ROOT / "configs/README.md").read_text().partition("## Gallery")[2].partition("\nRun ")[0]
     scenes = re.findall(r"\*\*\[\w+\]\((\w+\.yaml)\)\*\*", gallery)
     assert len(scenes) >= 12
@@ -178,7 +248,34 @@ def test_every_scene_of_the_gallery_names_its_row_or_says_why_not(every):
         said = re.findall(r"^# settings: (\w+)(.*)$", head, re.MULTILINE)
         assert len(said) == 1, name
         row, why = said[0]
-        assert row in {r.name for r in every} or row == "none" and len(why) > 15, name
+        if row == "none":
+            assert len(why) > 15, name
+            continue
+        assert same_settings(pbf, every, ROOT / "configs" / name, row) == [], name
+
+
+def same_settings(pbf, every, path, row):
+    """What a scene has otherwise than the advised setting of its row: keys, and the row of its plan."""
+    case = next(r.cases[0] for r in every if r.name == row)
+
+    def plan(scene, *words):
+        return subprocess.run([pbf, "plan", scene, *words], capture_output=True, text=True,
+                              check=True).stdout
+
+    told = json.loads(plan(path, "--json"))["settings_row"]
+    ours = yaml.safe_load(plan(path, "--resolved"))
+    theirs = yaml.safe_load(plan(case.scene, "--resolved", *case.words(0)))
+    keys = [("solver", "iterations"), ("solver", "substeps"), ("solver", "levels"),
+            ("fluid", "smoothing_ratio")]
+    return [f"{block}.{key}" for block, key in keys if ours[block][key] != theirs[block][key]] + \
+        [f"settings_row {told}"] * (told != row)
+
+
+def test_a_scene_that_is_not_as_its_row_advises_is_told_by_its_keys(every, pbf):
+    path = ROOT / "configs/dam_break.yaml"
+    assert same_settings(pbf, every, path, "dam_break") == ["solver.iterations", "solver.substeps"]
+    assert same_settings(pbf, every, path, "waves") == [
+        "solver.iterations", "solver.substeps", "solver.levels", "settings_row dam_break"]
 
 
 def test_every_row_has_a_heading_that_the_front_page_and_the_scenes_lead_to(every):

@@ -50,8 +50,40 @@ def test_a_run_without_gauges_of_an_experiment_is_refused_by_the_names_of_those(
     table = tmp_path / "other.csv"
     table.write_text("time,a\n0,1\n1,2\n")
     done = compare(table)
-    assert done.returncode == 1
-    assert f"{table} has the gauges a, time; a run of a scene" in done.stderr
+    assert done.returncode == 2
+    assert f"compare: {table} has the gauges a, time; a run of a scene" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["compare", "rows"])
+def test_a_run_or_table_that_is_not_there_is_told_in_one_line(tmp_path, name):
+    for path in (tmp_path / "nope", tmp_path / "nope.csv"):
+        done = subprocess.run([sys.executable, COMPARE.parent / name, path], capture_output=True,
+                              text=True)
+        assert done.returncode == 2 and not done.stdout
+        assert done.stderr.startswith(f"{name}: ") and done.stderr.count("\n") == 1
+        assert str(path) in done.stderr
+
+
+@pytest.mark.parametrize("text", ["", "time,x090\n", "time,x090\n0,none\n", "time,x090\n0\n1,2\n"])
+def test_a_table_without_numbers_is_told_in_one_line(tmp_path, text):
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    done = compare(path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(path) in done.stderr
+
+
+def test_the_wave_of_a_flume_is_read_back_from_a_table(tmp_path):
+    t = np.arange(0, 9, 0.01)
+    k, omega = 3.549, 2 * np.pi / 1.2
+    places = (0.9, 1.3, 1.7, 2.1, 2.5)
+    eta = [0.3 + 0.02 * np.exp(-0.1 * x) * np.cos(omega * t - 0.99 * k * x) for x in places]
+    path = tmp_path / "a.csv"
+    np.savetxt(path, np.column_stack([t, *eta]), "%.7g", ",", comments="",
+               header="time," + ",".join(f"x{round(100 * x):03}" for x in places))
+    done = compare(path)
+    assert "wave number 3.514 1/m, theory 3.549 (-1 %)" in done.stdout
+    at = np.exp(-0.1 * 2 * np.pi / k)
+    assert f"after a wave length {at:.3f}, theory 1.040" in done.stdout
 
 
 def script(name):
@@ -156,4 +188,4 @@ def test_rows_of_a_run_are_what_it_has_compared_and_its_surface(pbf, tmp_path):
 def test_rows_refuse_a_run_of_another_scene(minimal):
     done = subprocess.run([sys.executable, COMPARE.parent / "rows", minimal], capture_output=True,
                           text=True)
-    assert done.returncode == 1 and f"{minimal} is no finished run of a scene of waves" in done.stderr
+    assert done.returncode == 2 and f"{minimal} is no finished run of a scene of waves" in done.stderr

@@ -7,17 +7,18 @@ import numpy as np
 from .errors import BadInput, note
 from .table import Table
 
+# By column, or kind of gauge.
 _POOL = "only a pool has it: gravity along an axis, walls on all sides, no obstacles, " \
         "no tank_motion"
 WHY = {"height_kept": _POOL, "hydrostatic_deviation": _POOL,
-       "velocity": "no particle was within h of this gauge"}  # column, or kind of gauge
+       "velocity": "no particle was within reach of this gauge (its key within, by default h)"}
 
 
 def why(name: str) -> str:
     """Why a column or a kind of gauge can be nan, to follow a sentence; empty where not known.
 
     >>> why("velocity"), why("front_x")
-    ('; no particle was within h of this gauge', '')
+    ('; no particle was within reach of this gauge (its key within, by default h)', '')
     """
     return f"; {WHY[name]}" if name in WHY else ""
 

@@ -9,10 +9,12 @@ import pbf_tools
 import rows
 import table
 
+GUARD = 3  # exit code of pbf
+
 
 def run_of(case, number, start, given, folder):
-    """The figures of one run, in their order, its device and its seconds. A run that has failed, as
-    by the guard, has no figures: nan."""
+    """The figures of one run, in their order, its device and its seconds. In place of the figures of a
+    run that has failed stands the reason: a text."""
     out = folder / f"{case.row}-{case.name}-{number}-{start}"
     begin = time.perf_counter()
     done = subprocess.run([given.pbf, "run", case.scene, *case.words(number, start, given.reduced),
@@ -21,12 +23,28 @@ def run_of(case, number, start, given, folder):
     seconds = time.perf_counter() - begin
     if done.returncode != 0:
         print(f"{case.row}/{case.name}, {case.settings[number]['name']}: {done.stderr}", flush=True)
-        return [float("nan")] * len(case.figures), given.backend, seconds
+        return reason(done.returncode, done.stderr), device_of(out), seconds
     run = pbf_tools.open(out)
     found = [figures.value(run, f.source, seconds) for f in case.figures]
     for path in out.glob("*.vtkhdf"):
         path.unlink()
     return found, run.info["device"], seconds
+
+
+def reason(code, message):
+    """Why a run has failed, in a few words."""
+    if code == GUARD:
+        return "stopped by the guard"
+    last = message.strip().splitlines()[-1] if message.strip() else "no message"
+    return f"failed with {code}: {last.removeprefix('pbf: error: ').split(';')[0][:80]}"
+
+
+def device_of(out):
+    """Of a run that was stopped, as far as it is known."""
+    try:
+        return pbf_tools.open(out).info["device"]
+    except (pbf_tools.ToolError, KeyError, OSError):
+        return ""
 
 
 def jobs_of(cases, given, old):
@@ -40,12 +58,17 @@ def jobs_of(cases, given, old):
 
 
 def all_of(chosen, given, folder, old=()):
-    """The lines of the settings that have been run."""
+    """The lines of the settings that have been run, and how many runs were left out. Scenes are hashed
+    before the first run, as they are read then."""
     cases = [c for r in chosen for c in r.cases if c.reduced is not None or not given.reduced]
-    found, end = {}, time.monotonic() + given.seconds
+    jobs, defaults = jobs_of(cases, given, old), rows.defaults_sha256()
+    scenes = {(case.row, case.name, number): rows.scene_sha256(given.pbf, case, number)
+              for case, number, _ in jobs}
+    found, left_out, end = {}, [], time.monotonic() + given.seconds
 
     def one(case, number, start):
-        if time.monotonic() > end:
+        if time.monotonic() >= end:
+            left_out.append(case)
             print(f"left out: {case.row}/{case.name}/{number}, start {start}", flush=True)
             return
         result = run_of(case, number, start, given, folder)
@@ -53,14 +76,12 @@ def all_of(chosen, given, folder, old=()):
         print(f"{case.row}/{case.name}/{number}, start {start}: {result[2]:.1f} s", flush=True)
 
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        for job in [pool.submit(one, *job) for job in jobs_of(cases, given, old)]:
+        for job in [pool.submit(one, *job) for job in jobs]:
             job.result()
-    defaults = rows.defaults_sha256()
     lines = []
     for case in cases:
         for number, setting in enumerate(case.settings):
-            runs = found.get((case.row, case.name, number))
-            if runs:
-                scene = rows.scene_sha256(given.pbf, case, number)
-                lines += table.lines_of(case, number, setting, runs, scene, defaults)
-    return lines
+            key = case.row, case.name, number
+            if key in found:
+                lines += table.lines_of(case, number, setting, found[key], scenes[key], defaults)
+    return lines, len(left_out)

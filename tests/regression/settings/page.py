@@ -3,6 +3,7 @@
 import math
 
 import rows
+import table
 
 PAGE = rows.ROOT / "configs/SETTINGS.md"
 BEGIN, END = "<!-- tables: begin, tests/regression/settings/run -->", "<!-- tables: end -->"
@@ -15,10 +16,12 @@ def rounded(x, digits):
 
 
 def shown(line):
-    """The value to three digits, or as far as its scatter lets it be known, and the scatter."""
-    x, scatter = float(line["value"]), float(line["scatter"])
+    """The value to three digits, or as far as its scatter lets it be known, and the scatter; or why
+    there is none."""
+    x = table.value_of(line)
     if not math.isfinite(x):
-        return "stopped by the guard"
+        return line["value"].replace("|", "\\|")
+    scatter = float(line["scatter"])
     places = 2 - math.floor(math.log10(abs(x))) if x else 2
     if scatter > 0:
         places = min(places, 1 - math.floor(math.log10(scatter)))
@@ -67,7 +70,7 @@ def block(case, lines):
 
 def tables(every, lines, name):
     """All that stands between the marks."""
-    device = ", ".join(dict.fromkeys(line["device"] for line in lines))
+    device = ", ".join(dict.fromkeys(line["device"] for line in lines if line["device"]))
     out = [f"Measured on: {device}, float ([table](../tests/regression/settings/{name})).", "",
            *summary(every, lines), ""]
     for row in every:

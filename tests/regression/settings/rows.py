@@ -1,16 +1,19 @@
 """The rows of settings.yaml: problems, their cases, the settings that are measured, the figures."""
 
 import hashlib
+import inspect
 import os
 import pathlib
 import re
 import subprocess
 from dataclasses import dataclass, field
 
+import figures
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-SOURCES = ("log", "gauge", "compare", "call")
+# What a figure is read from -> keys that it needs, and others (figures.py).
+SOURCES = {"log": ("as", "from"), "gauge": ("as", "from"), "compare": ("of", "over")}
 
 
 class Wrong(ValueError):
@@ -19,8 +22,8 @@ class Wrong(ValueError):
 
 @dataclass(frozen=True)
 class Figure:
-    """One number of a run. `source`: one of SOURCES and what it takes (figures.py). Bounds are those
-    of the advised setting, of the full and of the reduced form; None: not asked."""
+    """One number of a run. `source`: log, gauge, compare or call, and what it takes (figures.py).
+    Bounds are those of the advised setting, of the full and of the reduced form; None: not asked."""
 
     name: str
     unit: str
@@ -70,6 +73,8 @@ def as_text(value) -> str:
 
 def only(given: dict, needed: str, optional: str, what: str) -> dict:
     names = set(needed.split()) | set(optional.split())
+    if not isinstance(given, dict):
+        raise Wrong(f"{what}: has no keys; it needs {', '.join(needed.split())}")
     for key in given:
         if key not in names:
             raise Wrong(f"{what}: {key}: unknown key; there are {', '.join(sorted(names))}")
@@ -79,35 +84,61 @@ def only(given: dict, needed: str, optional: str, what: str) -> dict:
     return given
 
 
+def name_of(given) -> str:
+    return str(given.get("name")) if isinstance(given, dict) else "?"
+
+
+def keys_of_source(given: dict, what: str) -> tuple[str, str]:
+    """Keys that a figure needs besides its name, and others that it may have."""
+    if "call" in given:
+        function = figures.FUNCTIONS.get(given["call"])
+        if function is None:
+            raise Wrong(f"{what}: call: {given['call']}: there are {', '.join(figures.FUNCTIONS)}")
+        return "call " + " ".join(p for p in inspect.signature(function).parameters
+                                  if p not in ("run", "seconds")), ""
+    read = [s for s in SOURCES if s in given]
+    if len(read) != 1:
+        raise Wrong(f"{what}: a figure has a name and one of {', '.join([*SOURCES, 'call'])}")
+    needs, may = SOURCES[read[0]]
+    return f"{read[0]} {needs}", may
+
+
 def figure(given: dict, what: str) -> Figure:
+    if not isinstance(given, dict):
+        raise Wrong(f"{what}: a figure is a map of keys")
+    needed, optional = keys_of_source(given, what)
+    only(given, f"name {needed}", f"{optional} unit factor add bounds reduced_bounds", what)
+    for key in ("bounds", "reduced_bounds"):
+        pair = given.get(key, [0, 0])
+        if not (isinstance(pair, list) and len(pair) == 2 and pair[0] <= pair[1]):
+            raise Wrong(f"{what}: {key} is [LOW, HIGH]")
     source = {k: v for k, v in given.items() if k not in
               ("name", "unit", "bounds", "reduced_bounds")}
-    read = [s for s in SOURCES if s in source]
-    if "call" not in read and len(read) != 1 or "name" not in given:
-        raise Wrong(f"{what}: a figure has a name and one of {', '.join(SOURCES)}")
     return Figure(given["name"], given.get("unit", ""), source, given.get("bounds"),
                   given.get("reduced_bounds"))
 
 
 def case(given: dict, row: str, folder: pathlib.Path) -> Case:
-    what = f"{row}/{given.get('name')}"
+    what = f"{row}/{name_of(given)}"
     only(given, "name scene text starts settings figures", "set reduced", what)
-    settings = [only({"set": {}, **s}, "name set", "", f"{what}: a setting")
-                for s in given["settings"]]
-    figures = [figure(f, f"{what}: {f.get('name')}") for f in given["figures"]]
+    settings = [{"set": {}, **only(s, "name", "set", f"{what}: a setting")} for s in given["settings"]]
+    numbers = [figure(f, f"{what}: {name_of(f)}") for f in given["figures"]]
     reduced = given.get("reduced")
-    if reduced is not None and not any(f.reduced_bounds for f in figures):
+    if reduced is not None and not any(f.reduced_bounds for f in numbers):
         raise Wrong(f"{what}: a reduced form needs a figure with reduced_bounds")
     return Case(row, given["name"], folder / given["scene"], given["text"], given.get("set", {}),
-                settings, figures, given["starts"], reduced)
+                settings, numbers, given["starts"], reduced)
 
 
 def read(path: pathlib.Path) -> list[Row]:
     """The rows of a file; Wrong says what is wrong with it."""
-    given = yaml.safe_load(path.read_text())
+    try:
+        given = yaml.safe_load(path.read_text())
+    except yaml.YAMLError as error:
+        raise Wrong(f"{path.name}: {' '.join(str(error).split())}") from error
     out = []
     for r in only(given, "rows", "settings", path.name)["rows"]:
-        only(r, "name title advice cases", "", f"{path.name}: {r.get('name')}")
+        only(r, "name title advice cases", "", f"{path.name}: {name_of(r)}")
         cases = [case(c, r["name"], path.parent) for c in r["cases"]]
         if not any(c.reduced is not None for c in cases):
             raise Wrong(f"{path.name}: {r['name']}: no case has a reduced form")
@@ -120,7 +151,7 @@ def scene_sha256(pbf, case: Case, number: int) -> str:
     done = subprocess.run([os.fspath(pbf), "plan", os.fspath(case.scene), "--resolved",
                            *case.words(number)], capture_output=True, text=True)
     if done.returncode != 0:
-        raise Wrong(f"{case.row}/{case.name}: {done.stderr.strip()}")
+        raise Wrong(f"{case.row}/{case.name}: {' '.join(done.stderr.split())}")
     kept = [line for line in done.stdout.splitlines()
             if not re.match(r"(backend|threads):", line)]
     return hashlib.sha256("\n".join(kept).encode()).hexdigest()

@@ -1,4 +1,5 @@
-"""settings_DEVICE.csv: a line for each figure of each setting."""
+"""settings_DEVICE.csv: a line for each figure of each setting. `value` is a text where runs have
+failed."""
 
 import csv
 import math
@@ -14,18 +15,39 @@ def number(x):
 
 
 def lines_of(case, number_of, setting, runs, scene, defaults):
-    """Means over the runs of a setting and half their range."""
+    """Means over the runs of a setting and half their range; where some have failed, the reason of the
+    first of these, and how many they are, in place of the mean."""
+    failed = [found for found, _, _ in runs if isinstance(found, str)]
+    device = next((d for _, d, _ in runs if d), "")
     for k, figure in enumerate(case.figures):
-        values = [found[k] for found, _, _ in runs]
+        if failed:
+            share = f" in {len(failed)} of {len(runs)} starts" if len(runs) > 1 else ""
+            value, scatter = failed[0] + share, ""
+        else:
+            values = [found[k] for found, _, _ in runs]
+            value = number(sum(values) / len(values))
+            scatter = number((max(values) - min(values)) / 2)
         yield dict(zip(COLUMNS, [
             case.row, case.name, setting["name"], "no" if number_of else "yes", figure.name,
-            figure.unit, number(sum(values) / len(values)), number((max(values) - min(values)) / 2),
-            len(runs), number(sum(r[2] for r in runs) / len(runs)), runs[0][1], scene, defaults]))
+            figure.unit, value, scatter, len(runs), number(sum(r[2] for r in runs) / len(runs)),
+            device, scene, defaults]))
+
+
+def value_of(line):
+    """The mean; nan where the runs have failed."""
+    try:
+        return float(line["value"])
+    except ValueError:
+        return math.nan
 
 
 def read(path):
     with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+        found = csv.DictReader(file)
+        if found.fieldnames != COLUMNS:
+            raise rows.Wrong(f"{path}: is no table of `run`, whose first line is {','.join(COLUMNS)}; "
+                             "remove it or give another one")
+        return list(found)
 
 
 def write(path, lines):
@@ -103,8 +125,8 @@ def out_of_bounds(lines, chosen, reduced=False):
             for line in lines:
                 if bounds and (line["row"], line["case"], line["figure"], line["advice"]) == \
                         (case.row, case.name, figure.name, "yes"):
-                    x = float(line["value"])
+                    x = value_of(line)
                     if not (math.isfinite(x) and bounds[0] <= x <= bounds[1]):
-                        out.append(f"{case.row}/{case.name}: {figure.name} is {x:g} {figure.unit}, "
-                                   f"bounds {bounds}")
+                        said = f"{x:g} {figure.unit}" if math.isfinite(x) else line["value"]
+                        out.append(f"{case.row}/{case.name}: {figure.name} is {said}, bounds {bounds}")
     return out

@@ -13,6 +13,7 @@ DATA = ROOT / "configs/validation"
 sys.path.insert(0, str(ROOT / "tools"))
 import pbf_tools  # noqa: E402
 from pbf_tools import waves  # noqa: E402
+from pbf_tools.errors import BadInput  # noqa: E402
 
 G = 9.81
 COLUMNS = ("scene", "spacing_m", "reading", "quantity", "unit", "run", "data")
@@ -128,7 +129,7 @@ def rows(path):
     run = pbf_tools.open(str(path))
     kind = next((k for name, k in KINDS.items() if name in run.gauges), None)
     if kind is None or not run.compare:
-        sys.exit(f"rows: {path} is no finished run of a scene of waves in configs/validation")
+        raise BadInput(f"{path} is no finished run of a scene of waves in configs/validation")
     for reading, quantity, unit, value, data in [*compared(run), *kind(run)]:
         yield [run.name, f"{run.info['spacing']:.6g}", reading, quantity, unit, f"{value:.4g}",
                f"{data:.4g}" if data != "" else ""]
