@@ -33,7 +33,7 @@ std::size_t memory_line(const char* file, const std::string& name) {
 }  // namespace
 
 std::string cpu_model() {
-  const std::string value = value_of("/proc/cpuinfo", "model name");
+  static const std::string value = value_of("/proc/cpuinfo", "model name");
   return value.size() > 1 ? value.substr(1) : "unknown CPU";
 }
 

@@ -1,33 +1,48 @@
 #include "lib/base/worker.h"
 
+#include <chrono>
 #include <utility>
 
 #include "lib/base/start_thread.h"
 
 namespace pbf::base_module {
 
-Worker::Worker(int most) : most_(most), thread_(start_thread([this] { work(); })) {}
+Worker::Worker(int most, WhenIdle when_idle)
+    : most_(most), when_idle_(std::move(when_idle)), thread_(start_thread([this] { work(); })) {}
 
 void Worker::work() {
   std::unique_lock lock(mutex_);
+  bool idle = true;  // nothing was done yet
   while (!failure_) {
-    changed_.wait(lock, [&] { return ending_ || !jobs_.empty(); });
-    if (jobs_.empty()) return;
-    const Job& job = jobs_.front();
-    lock.unlock();
-    std::exception_ptr thrown;
-    try {
-      job.action();
-    } catch (...) {
-      thrown = std::current_exception();
+    const auto comes = [&] { return ending_ || !jobs_.empty(); };
+    if (idle || !when_idle_.action) {
+      changed_.wait(lock, comes);
+    } else if (!changed_.wait_for(lock, std::chrono::duration<double>(when_idle_.seconds), comes)) {
+      idle = true;
+      act(lock, when_idle_.action);
+      continue;
     }
-    lock.lock();
+    if (jobs_.empty()) return;
+    idle = false;
+    const Job& job = jobs_.front();
+    act(lock, job.action);
     large_ -= job.large;
     jobs_.pop_front();
-    failure_ = thrown;
     if (failure_) jobs_.clear();
     changed_.notify_all();
   }
+}
+
+void Worker::act(std::unique_lock<std::mutex>& lock, const std::function<void()>& action) {
+  lock.unlock();
+  std::exception_ptr thrown;
+  try {
+    action();
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  lock.lock();
+  failure_ = thrown;
 }
 
 bool Worker::push(std::function<void()> job, bool large) {

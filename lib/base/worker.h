@@ -10,12 +10,18 @@
 
 namespace pbf::base_module {
 
+/// What a Worker does once when no job has come for so long after the last one.
+struct WhenIdle {
+  double seconds = 0;
+  std::function<void()> action{};
+};
+
 /// Runs jobs in order on its own thread until one throws; later jobs are dropped. Its functions
 /// must not be called by several threads at a time.
 class Worker {
  public:
   /// Holds at most `most` large jobs, including the running one. Throws Error(unavailable).
-  explicit Worker(int most);
+  explicit Worker(int most, WhenIdle when_idle = {});
   ~Worker() { join(); }
   /// Adds a job; waits for room if it is large. False if a job has thrown.
   bool push(std::function<void()> job, bool large);
@@ -30,8 +36,11 @@ class Worker {
     bool large;
   };
   void work();
+  /// Without the lock; keeps what `action` throws.
+  void act(std::unique_lock<std::mutex>& lock, const std::function<void()>& action);
 
   const int most_;
+  const WhenIdle when_idle_;
   std::mutex mutex_;  // protects everything below
   std::condition_variable changed_;
   std::deque<Job> jobs_;  // the first one may be running

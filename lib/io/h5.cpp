@@ -41,6 +41,17 @@ Lock::~Lock() { held_here = false; }
 
 bool Lock::held() { return held_here; }
 
+Unlocked::Unlocked() {
+  require_lock();
+  held_here = false;
+  process_mutex.unlock();
+}
+
+Unlocked::~Unlocked() {
+  process_mutex.lock();
+  held_here = true;
+}
+
 void require_lock() {
   if (!Lock::held()) throw Error(ExitCode::internal, "HDF5 is used without h5::Lock");
 }

@@ -29,6 +29,15 @@ class Lock {
   std::unique_lock<std::mutex> lock_;
 };
 
+/// Gives the Lock of this thread to others during its lifetime, for what takes long and is none of
+/// HDF5's: waiting for the disk.
+class Unlocked {
+ public:
+  Unlocked();
+  ~Unlocked();
+  Unlocked(const Unlocked&) = delete;
+};
+
 /// The reason of the last failed HDF5 call of this thread, as short as it can be said: the
 /// operating system's message ("No space left on device") if there is one.
 std::string reason();

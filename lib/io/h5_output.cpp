@@ -28,7 +28,9 @@ Properties writer_access() {
 }
 
 void sync(hid_t file) {
-  if (::fdatasync(descriptor(file)) != 0) throw Failure(std::strerror(errno));
+  const int fd = descriptor(file);
+  const Unlocked others_may;
+  if (::fdatasync(fd) != 0) throw Failure(std::strerror(errno));
 }
 
 std::int64_t stored_size(hid_t file) {
@@ -60,7 +62,10 @@ std::int64_t flush_reserved(hid_t file, bool longer) {
 void sync_folder(const std::string& folder) {
   const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;  // not everywhere possible; the files themselves are safe
-  ::fsync(fd);
+  {
+    const Unlocked others_may;
+    ::fsync(fd);
+  }
   ::close(fd);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -112,7 +113,8 @@ class RunWriter {
             const KeptRows& rows);
   ~RunWriter();
   /// Queues a frame of any particles; blocks while more than 2 wait. A frame is durable (on the
-  /// disk, readable after kill -9 and after a power cut) once frames_written() counts it.
+  /// disk, readable after kill -9 and after a power cut) once frames_written() counts it, at most
+  /// run_layout::commit_seconds after it was written.
   void write(Snapshot&& snapshot);
   /// The same for a frame whose rows are elsewhere (lib/solver/split_rows.h): makes room for it,
   /// once all that was queued is done. Its ids are 0, 1, 2 ... `chunks` are empty in a file with
@@ -182,6 +184,8 @@ class RunReader {
   /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
   std::vector<double> log_column(const std::string& name) const;
   std::vector<std::string> log_columns() const;
+  /// All columns by name, opening the file once.
+  std::map<std::string, std::vector<double>> log() const;
   /// A column of readings by its path below /pbf: "gauges/H2", "log/load/post/force_x".
   RunColumn column(const std::string& path) const;
   std::vector<StoredComparison> comparisons() const;

@@ -25,6 +25,9 @@ inline constexpr unsigned body_rows = 64;
 /// Rows of the log and of gauges wait for so many, or so long (s).
 inline constexpr std::size_t waiting_rows = 256;
 inline constexpr double waiting_seconds = 5;
+/// Frames that come faster than this (s) are committed together. A commit waits for the disk three
+/// times, and writes the waiting rows of the log.
+inline constexpr double commit_seconds = 0.25;
 
 /// Where readings of gauges lie below /pbf.
 inline constexpr const char* gauges = "gauges/";

@@ -43,7 +43,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   make_gauges(0);
   make_sessions();
   begin_session(info);
-  sync();
+  store();
   const auto folder = std::filesystem::absolute(path).parent_path();
   h5::sync_folder(folder);
   h5::sync_folder(folder.parent_path());
@@ -54,8 +54,13 @@ RunOutput::~RunOutput() {
 }
 
 void RunOutput::write_frame(const Snapshot& s) {
+  if (added_ % run_layout::step_rows == 0) commit();  // their times are in one chunk of the table
   add_frame(s, nullptr);
-  commit_frame();
+  commit_if_due();
+}
+
+void RunOutput::commit_if_due() {
+  if (!since_commit_ || since_commit_->seconds() >= run_layout::commit_seconds) commit();
 }
 
 FramePlaces RunOutput::begin_frame(const Snapshot& head) {
@@ -64,7 +69,13 @@ FramePlaces RunOutput::begin_frame(const Snapshot& head) {
   add_frame(head, &places);
   places.chunk_rows = static_cast<std::int64_t>(chunk_rows_);
   longer_ = h5::reserve(file_, before) || longer_;
+  in_steps_ = true;
   return places;
+}
+
+void RunOutput::commit_frame() {
+  in_steps_ = false;
+  commit();
 }
 
 void RunOutput::rows(std::size_t field, std::int64_t first, const FieldArray& rows) {
@@ -105,19 +116,21 @@ void RunOutput::add_frame(const Snapshot& s, FramePlaces* places) {
   id_starts_.append(std::vector<std::int64_t>{0, 0, 0, 0});
   updates_.append(s.update);
   write_bodies(s);
-  last_times_[times_.rows() % run_layout::step_rows] = s.time;
-  times_.write_ahead(last_times_);
+  last_times_[added_++ % run_layout::step_rows] = s.time;
 }
 
-/// In the order that a power cut must not change: what a frame consists of; then NSteps, which
+/// In the order that a power cut must not change: what the frames consist of; then NSteps, which
 /// readers trust; then the size of Values, for VTK's reader overruns its heap when that is longer.
-void RunOutput::commit_frames(std::int64_t frames) {
-  sync();
-  set_steps(frames);
-  sync();
-  times_.grow(static_cast<hsize_t>(frames));
-  sync();
-  frames_ = frames;
+void RunOutput::commit() {
+  if (added_ == frames_ || in_steps_) return;
+  times_.write_ahead(last_times_);
+  store();
+  set_steps(added_);
+  store();
+  times_.grow(static_cast<hsize_t>(added_));
+  store();
+  frames_ = added_;
+  since_commit_.emplace();
 }
 
 void RunOutput::set_steps(std::int64_t frames) {
@@ -131,18 +144,24 @@ void RunOutput::flush() {
   bytes_ = h5::flush_reserved(file_, std::exchange(longer_, false));
 }
 
-void RunOutput::sync() {
+void RunOutput::store() {
   flush();
   h5::sync(file_);
 }
 
+void RunOutput::sync() {
+  commit();
+  store();
+}
+
 void RunOutput::close(const RunEnding& end) {
+  commit();
   flush();
   end_session(end.reason.empty() ? end.status : end.reason, end.last_update);
   write_warnings(end.warnings);
   write_comparisons(end.comparisons);
   h5::write_text(pbf_, "status", end.status);
-  sync();
+  store();
   closed_ = true;
 }
 

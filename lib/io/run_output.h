@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,20 +26,22 @@ class RunOutput {
   RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
             const KeptRows& rows);
   ~RunOutput();
-  /// Appends a frame and commits it: from the return on a killed process leaves it readable.
+  /// Appends a frame, and commits what is not yet: from then on a killed process leaves it
+  /// readable. Soon after another commit it leaves that to later calls, or to commit().
   void write_frame(const Snapshot& snapshot);
-  /// The same in steps, for rows that are elsewhere. begin_frame() makes room for a frame, of which
+  void commit();
+  /// A frame in steps, for rows that are elsewhere. begin_frame() makes room for a frame, of which
   /// `head` has no bytes and the ids 0, 1, 2 ...; `chunks` are empty in a file with compression.
   /// There rows() writes them, in whole chunks. commit_frame() is to be called when all rows are on
   /// the disk or written by rows().
   FramePlaces begin_frame(const Snapshot& head);
   void rows(std::size_t field, std::int64_t first, const FieldArray& rows);
-  void commit_frame() { commit_frames(frames_ + 1); }
+  void commit_frame();
   std::uint64_t inode() const;
   /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
   void log(const LogRow& row);
   void gauges(const GaugeRow& row);
-  /// Writes what waits and waits until the disk has stored it.
+  /// Commits, writes what waits, and waits until the disk has stored it.
   void sync();
   /// The same with the end of the session.
   void close(const RunEnding& ending);
@@ -103,16 +106,19 @@ class RunOutput {
   void add_frame(const Snapshot& snapshot, FramePlaces* places);
   std::int64_t part_of(std::size_t count);
   std::int64_t write_ids(const Snapshot& snapshot, bool split);
-  void commit_frames(std::int64_t frames);
+  void commit_if_due();
   void set_steps(std::int64_t frames);  // NSteps
   void write_log();
   void write_further();
   void flush();
+  void store();  // flushes, and waits for the disk
 
   h5::File file_;  // first: destroyed last
   bool gzip_, opening_ = false, closed_ = false;
-  bool longer_ = false;  // the file, since the disk has stored its size
-  std::int64_t frames_ = 0, bytes_ = 0;
+  bool longer_ = false;    // the file, since the disk has stored its size
+  bool in_steps_ = false;  // a frame has begun, and its rows may be missing
+  std::int64_t frames_ = 0, added_ = 0, bytes_ = 0;  // frames: committed, and all
+  std::optional<Stopwatch> since_commit_;
   std::size_t expected_;  // particles at most, from RunInfo
   ScalarType id_type_ = ScalarType::i32;
   h5::Group vtk_, steps_, pbf_;

@@ -59,9 +59,9 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   open_further(static_cast<hsize_t>(rows.log));
   make_gauges(static_cast<hsize_t>(rows.gauges));
   opening_ = false;
-  sync();  // Values is never longer than NSteps
+  store();  // Values is never longer than NSteps
   set_steps(frames);
-  frames_ = frames;
+  frames_ = added_ = frames;
   h5::write_text(pbf_, "status", "running");
   if (h5::read_text(pbf_, "resolved_scene") != info.resolved_scene) {  // a later end
     h5::write_text(pbf_, "resolved_scene", info.resolved_scene);

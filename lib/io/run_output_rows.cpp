@@ -8,6 +8,7 @@ namespace pbf::io_module {
 
 void RunOutput::log(const LogRow& row) {
   if (waiting_.add(row)) flush();
+  commit_if_due();
 }
 
 void RunOutput::write_log() {
@@ -69,6 +70,7 @@ void RunOutput::gauges(const GaugeRow& row) {
   std::vector<double> numbers{row.time, double(row.update)};
   numbers.insert(numbers.end(), row.numbers.begin(), row.numbers.end());
   if (waiting_gauges_.add(std::move(numbers))) flush();
+  commit_if_due();
 }
 
 void RunOutput::write_gauges() {

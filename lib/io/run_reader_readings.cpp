@@ -12,6 +12,16 @@ namespace {
 
 const std::string kGauges = std::string("pbf/gauges");
 
+/// Rows that all columns have. A process killed while it wrote the log may leave columns of
+/// different lengths.
+hsize_t rows_of_log(hid_t log) {
+  hsize_t rows = std::numeric_limits<hsize_t>::max();
+  for (const auto& c : run_layout::log_columns())
+    if (h5::has_link(log, c.name))  // else of a later version than the file's
+      rows = std::min(rows, h5::shape(h5::open_dataset(log, c.name)).at(0));
+  return rows;
+}
+
 }  // namespace
 
 std::vector<std::string> RunReader::log_columns() const {
@@ -84,17 +94,19 @@ std::vector<double> RunReader::log_column(const std::string& name) const {
                    [&](const h5::Reading& file) -> std::vector<double> {
                      const h5::Group log = h5::open_group(file, "pbf/log");
                      if (name.empty() || !h5::has_link(log, name)) return {};
-                     auto values = h5::read_all<double>(log, name);
-                     // A process killed while it wrote the log may leave columns of different
-                     // lengths.
-                     for (const auto& c : run_layout::log_columns()) {
-                       if (!h5::has_link(log, c.name))
-                         continue;  // of a later version than the file's
-                       const h5::Dataset d = h5::open_dataset(log, c.name);
-                       values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
-                     }
-                     return values;
+                     return h5::read_all<double>(log, name, rows_of_log(log));
                    });
+}
+
+std::map<std::string, std::vector<double>> RunReader::log() const {
+  return with_file(path_, "cannot read the log", [](const h5::Reading& file) {
+    std::map<std::string, std::vector<double>> all;
+    const h5::Group log = h5::open_group(file, "pbf/log");
+    const hsize_t rows = rows_of_log(log);
+    for (const std::string& name : h5::datasets_below(log, run_layout::log_groups))
+      all[name] = h5::read_all<double>(log, name, rows);
+    return all;
+  });
 }
 
 }  // namespace pbf::io_module

@@ -6,6 +6,7 @@
 #include "lib/base/worker.h"
 #include "lib/io/h5.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
 namespace pbf::io_module {
@@ -15,7 +16,7 @@ struct RunWriter::Impl {
 
   Impl(const std::string& path, const std::string& opening,
        const std::function<std::unique_ptr<RunOutput>()>& open)
-      : path_(path), worker_(max_snapshots) {
+      : path_(path), worker_(max_snapshots, {run_layout::commit_seconds, [this] { commit(); }}) {
     worker_.push([=, this] { on_file(opening, [&] { out_ = open(); }); }, false);
     worker_.wait();
     rethrow();
@@ -44,6 +45,10 @@ struct RunWriter::Impl {
   void wait() {
     worker_.wait();
     rethrow();
+  }
+  /// Frames that wait for it.
+  void commit() {
+    if (out_) on_file(frame(), [&] { out_->commit(); });
   }
   std::string frame() const { return "cannot write frame " + std::to_string(frames_); }
 

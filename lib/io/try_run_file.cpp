@@ -10,7 +10,7 @@ void try_run_file(const std::string& path) {
     run.info();
     run.status();
     run.sessions();
-    for (const std::string& name : run.log_columns()) run.log_column(name);
+    run.log();
     for (const std::string& name : run.gauges()) run.gauge(name);
     if (run.frames() > 0) {
       run.frame(0);

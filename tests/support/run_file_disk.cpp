@@ -146,7 +146,8 @@ std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int
       write_split(writer, path, split_sample(k), 3);
     else
       writer.write(changing_sample(k));
-    while (writer.frames_written() <= k) std::this_thread::yield();
+    if (!split && k % 6 != 0 && k % 6 != 2 && k % 6 != 5) continue;  // committed in groups
+    writer.sync();
     disk.mark(k + 1);
   }
   writer.finish({"finished"});

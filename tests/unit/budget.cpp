@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2570},        {"kernels", 7740},  {"lib/base", 1850},   {"lib/campaign", 4060},
-    {"lib/data", 1590},   {"lib/exec", 6900}, {"lib/io", 4240},     {"lib/program", 9660},
+    {"app", 2670},        {"kernels", 7740},  {"lib/base", 1870},   {"lib/campaign", 4590},
+    {"lib/data", 1590},   {"lib/exec", 6920}, {"lib/io", 4330},     {"lib/program", 9660},
     {"lib/render", 3950}, {"lib/run", 6430},  {"lib/scene", 10550}, {"lib/solver", 3070},
     {"lib/verify", 2160},
 };

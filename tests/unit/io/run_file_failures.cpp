@@ -55,6 +55,7 @@ void write_until_full(const std::string& path, bool gzip, std::size_t count) {
   for (std::int64_t k = 0; k < 1000; ++k) {
     writer.log(sample_row(k));
     writer.write(sample(k, count));
+    if (k == 1) writer.sync();  // two frames are safe
   }
   writer.finish({"finished"});
 }
