@@ -32,7 +32,9 @@ struct BatchOptions : SceneOptions {
   std::string input;              ///< folder, scene or list
   std::string out;                ///< folder of the runs; empty: out/batch_<name>
   std::vector<std::string> grid;  ///< key=v1,v2
-  int jobs = 1, threads = 0;      ///< at a time; CPU threads per run, 0: all / jobs
+  int jobs = 0;                   ///< at a time; 0: as the help says
+  int threads = 0;                ///< CPU threads per run, 0: all / jobs
+  std::string share = "auto";     ///< which runs share a process
   int ranks = 1;                  ///< per run of the Slurm script
   std::int64_t only = -1;         ///< index of the only run, from 0; -1: all
   double max_walltime = 0;        ///< s, 0: none
@@ -42,12 +44,11 @@ struct BatchOptions : SceneOptions {
 };
 
 const char* const kBatchHelp =
-    "Every run is `pbf run --resume` in a folder of its own: what is finished (DONE is there, and\n"
-    "run.vtkhdf is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
-    "what was stopped or killed goes on, so the same command can be given again until all is\n"
-    "done. OUT/summary.csv and summary.json have a row per run: its settings, why it ended, its "
-    "last\n"
-    "measures.\n"
+    "Every run is what `pbf run --resume` does, in a folder of its own: what is finished (DONE\n"
+    "is there, and run.vtkhdf is whole, of this scene, up to its end; --collect looks too) is\n"
+    "left alone, what was stopped or killed goes on, so the same command can be given again\n"
+    "until all is done. OUT/summary.csv and summary.json have a row per run: its settings, why\n"
+    "it ended, its last measures.\n"
     "Every run is read and planned before the first one starts. SIGTERM, SIGINT and\n"
     "--max-walltime save all runs.\n"
     "Exit code 0 when all are finished, 75 when some are to go on, 6 when some failed.\n"
@@ -91,7 +92,10 @@ std::string script(const BatchOptions& o, const std::string& out,
   slurm_seconds(o.time);  // reports errors before the runs are checked
   std::vector<std::string> overrides = o.overrides;
   overrides.push_back("threads=" + std::to_string(wishes.threads));
-  wishes.needs = check_members(members, overrides, o.base_folder, false, o.ranks);
+  for (const JobNeeds& n : check_members(members, overrides, o.base_folder, false, o.ranks)) {
+    wishes.needs.host_bytes = std::max(wishes.needs.host_bytes, n.host_bytes);
+    wishes.needs.device |= n.device;
+  }
   return slurm_script(wishes);
 }
 
@@ -102,20 +106,29 @@ std::string list_text(const std::vector<BatchMember>& members) {
   return text;
 }
 
+JobLimits limits(const BatchOptions& o) {
+  JobLimits limits;
+  if (o.jobs > 0) limits.alone = limits.shared = o.jobs;
+  return limits;
+}
+
 /// CPU threads of each run; 0: as its scene says.
-int threads_of_run(const BatchOptions& o) {
-  return o.threads == 0 && o.jobs > 1 ? std::max(1, usable_threads() / o.jobs) : o.threads;
+int threads_of_run(const BatchOptions& o, bool shares = false) {
+  const int jobs = shares ? limits(o).shared : limits(o).alone;
+  return o.threads == 0 && jobs > 1 ? std::max(1, usable_threads() / jobs) : o.threads;
 }
 
 class Batch {
  public:
-  Batch(const BatchOptions& o, std::vector<BatchMember> members, const std::string& out, Log& log)
-      : o_(o), members_(std::move(members)), out_(out), log_(log), threads_(threads_of_run(o)) {}
+  /// needs: of the members.
+  Batch(const BatchOptions& o, std::vector<BatchMember> members, std::vector<JobNeeds> needs,
+        const std::string& out, Log& log)
+      : o_(o), members_(std::move(members)), needs_(std::move(needs)), out_(out), log_(log) {}
 
   void run() {
     const auto stop = [this] { return signal_token().why() || time_is_up(); };
     run_jobs(
-        o_.jobs, members_.size(), [this](std::size_t k) { return arguments(members_[k]); }, stop,
+        limits(o_), needs_, [this](std::size_t k) { return arguments(k); }, stop,
         [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
   }
 
@@ -186,12 +199,14 @@ class Batch {
   }
   bool time_is_up() const { return o_.max_walltime > 0 && wall_.seconds() >= o_.max_walltime; }
 
-  std::vector<std::string> arguments(const BatchMember& m) const {
+  std::vector<std::string> arguments(std::size_t k) const {
+    const BatchMember& m = members_[k];
     std::vector<std::string> args{"run",     m.scene,   "--out", out_ + "/" + m.name,
                                   "--quiet", "--resume"};
     for (const std::string& word : options_of_runs(o_)) args.push_back(word);
     for (const std::string& s : m.overrides) args.insert(args.end(), {"--set", s});
-    if (threads_ > 0) args.insert(args.end(), {"--threads", std::to_string(threads_)});
+    if (const int n = threads_of_run(o_, needs_[k].shares))
+      args.insert(args.end(), {"--threads", std::to_string(n)});
     if (o_.max_walltime > 0)
       args.insert(args.end(),
                   {"--max-walltime",
@@ -212,10 +227,10 @@ class Batch {
 
   const BatchOptions& o_;
   std::vector<BatchMember> members_;
+  std::vector<JobNeeds> needs_;
   std::string out_;
   Log& log_;
   Stopwatch wall_;
-  int threads_;
   std::map<std::string, JobEnd> ends_;
 };
 
@@ -237,10 +252,12 @@ int command_batch(const BatchOptions& o) {
     throw Error(ExitCode::bad_input, fmt::format("--only {}: the runs are counted from 0 to {}",
                                                  o.only, members.size() - 1));
   const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
+  std::vector<JobNeeds> needs(one ? 1 : members.size());
   if (!one && !o.collect) {
     std::vector<std::string> overrides = o.overrides;
     if (const int n = threads_of_run(o)) overrides.push_back("threads=" + std::to_string(n));
-    check_members(members, overrides, o.base_folder, true);
+    needs = check_members(members, overrides, o.base_folder, true);
+    for (JobNeeds& n : needs) n.shares = o.share == "yes" || (o.share == "auto" && n.device);
   }
   make_folder(out);
   for (const char* name : {"/summary.csv", "/summary.json"}) {
@@ -249,7 +266,7 @@ int command_batch(const BatchOptions& o) {
   }
   watch_signals();
   if (one) members = {members[static_cast<std::size_t>(o.only)]};
-  Batch batch(o, members, out, log);
+  Batch batch(o, members, std::move(needs), out, log);
   o.collect ? batch.collect() : batch.run();
   return one ? batch.code() : batch.finish();
 }
@@ -259,7 +276,7 @@ int command_batch(const BatchOptions& o) {
 void add_batch(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_batch, "batch",
-      "Many scenes, or one with a grid of settings: each run in a process of its own", kBatchHelp);
+      "Many scenes, or one with a grid of settings: each run in a folder of its own", kBatchHelp);
   c->add_option(
        "INPUT", o.input,
        "Folder of scenes (*.yaml), a scene, or a list: a scene or a run on each line, then "
@@ -273,7 +290,14 @@ void add_batch(CLI::App& app, int& code) {
       "pbf stability take equal ratios): a run for every value; repeatable, then for every "
       "combination");
   add_scene_options(c, o);
-  c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
+  c->add_option("--jobs", o.jobs,
+                "Runs at a time; 1, of those that share a process up to 8: as many as fit into "
+                "memory and have together about 300000 particles")
+      ->transform(whole_number(1, 4096));
+  c->add_option("--share", o.share,
+                "Whether runs share a process, which makes the GPU ready once: auto: those on a "
+                "GPU; yes; no")
+      ->check(CLI::IsMember({"auto", "yes", "no"}));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
       ->transform(whole_number(1, 4096));
   c->add_option("--max-walltime", o.max_walltime, "Stop all after so many seconds, save, exit 75")

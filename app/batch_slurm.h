@@ -15,7 +15,7 @@ struct SlurmWishes {
   int ranks = 1;         ///< of each run
   int threads = 4;       ///< CPUs per rank
   std::string time;      ///< time limit per task, in one of Slurm's forms
-  BatchNeeds needs;      ///< of the most demanding run
+  JobNeeds needs;        ///< most memory, and whether any run needs a GPU
 };
 
 /// Seconds of a time in Slurm's forms: M, M:S, H:M:S, D-H, D-H:M, D-H:M:S. Throws Error(bad_input)

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace pbf::app_module {
 
@@ -20,6 +21,15 @@ void add_study(CLI::App& app, int& code);
 void add_batch(CLI::App& app, int& code);
 void add_stability(CLI::App& app, int& code);
 void add_info(CLI::App& app, int& code);
+void add_serve_batch(CLI::App& app, int& code);  ///< not in the help: pbf batch starts it
+
+/// How a command line ended.
+struct Ending {
+  int code = 0;
+  std::string message{};  ///< of an error; empty: none
+};
+/// Does what the command line says, without an exception. words: without the name of the program.
+Ending execute(const std::vector<std::string>& words);
 
 /// For a command line that CLI11 rejects: its message, or a better one for unexpected arguments
 /// (unknown options and commands, a second scene, a setting without --set), with a suggestion and

@@ -67,7 +67,8 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
     if (message.empty()) message = what;
     return message + "\nSee pbf " + chosen[0]->get_name() + " --help";
   }
-  const auto commands = names(app.get_subcommands([](const CLI::App*) { return true; }));
+  const auto commands =
+      names(app.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); }));
   std::string message = what, meant;
   if (!extras.empty() && extras[0][0] != '-') {
     message = extras[0] + ": unknown command";

@@ -34,25 +34,27 @@ const char* const kExitCodes =
 
 /// The words to parse. With --help anywhere, only the command and --help: an option before --help
 /// would take it as its value.
-std::vector<const char*> words_of_line(int argc, char** argv) {
-  std::vector<const char*> words(argv, argv + argc);
+std::vector<const char*> words_of_line(const std::vector<std::string>& line) {
+  std::vector<const char*> words{"pbf"};
+  for (const std::string& word : line) words.push_back(word.c_str());
   const auto asks = [](std::string_view word) { return word == "--help" || word == "-h"; };
-  if (argc > 2 && *argv[1] != '-' && std::any_of(argv + 2, argv + argc, asks))
-    words = {argv[0], argv[1], "--help"};
+  if (words.size() > 2 && *words[1] != '-' && std::any_of(words.begin() + 2, words.end(), asks))
+    words = {words[0], words[1], "--help"};
   return words;
 }
 
-int run_main(int argc, char** argv) {
+int run_main(const std::vector<std::string>& line) {
   CLI::App app("pbf: Position Based Fluids, from a scene file to HDF5 and pictures.", "pbf");
   app.set_version_flag("--version", "pbf " + build_info().version);
   app.require_subcommand(1);
   app.footer(kExitCodes);
   int code = 0;
-  for (const auto add : {add_run, add_plan, add_render, add_compare, add_compare_data, add_probe,
-                         add_config, add_bench, add_study, add_batch, add_stability, add_info})
+  for (const auto add :
+       {add_run, add_plan, add_render, add_compare, add_compare_data, add_probe, add_config,
+        add_bench, add_study, add_batch, add_stability, add_info, add_serve_batch})
     add(app, code);
   try {
-    const std::vector<const char*> words = words_of_line(argc, argv);
+    const std::vector<const char*> words = words_of_line(line);
     app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) {  // --help, --version; to stdout, where a failed write is detected
@@ -66,35 +68,45 @@ int run_main(int argc, char** argv) {
   return code;
 }
 
+template <class Work>
+Ending ending_of(const Work& work) {
+  const auto failed = [](ExitCode code, const std::string& message) {
+    return Ending{static_cast<int>(code), message};
+  };
+  try {
+    return {work()};
+  } catch (const Error& e) {
+    return failed(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return failed(ExitCode::unavailable,
+                  "not enough memory; use fewer particles (a larger fluid.spacing) or a machine "
+                  "with more memory (pbf plan says how much a scene needs)");
+  } catch (const std::exception& e) {
+    return failed(ExitCode::internal, std::string("internal error: ") + e.what());
+  }
+}
+
 int fail(ExitCode code, const std::string& message) {
   // Messages may quote any text: arguments, file names, the environment, files of others.
   std::fprintf(stderr, "pbf: error: %s\n", escaped(message).c_str());
   return static_cast<int>(code);
 }
 
-int guarded(int argc, char** argv) {
-  try {
-    const int code = run_main(argc, argv);
+int guarded(const std::vector<std::string>& line) {
+  const Ending end = ending_of([&] {
+    const int code = run_main(line);
     finish_stdout();
     return code;
-  } catch (const Error& e) {
-    return fail(e.code(), e.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::unavailable,
-                "not enough memory; use fewer particles (a larger fluid.spacing) or a machine "
-                "with more memory (pbf plan says how much a scene needs)");
-  } catch (const std::exception& e) {
-    return fail(ExitCode::internal, std::string("internal error: ") + e.what());
-  }
+  });
+  return end.message.empty() ? end.code : fail(ExitCode(end.code), end.message);
 }
 
 /// Started by mpirun or srun on several ranks: rank 0 does what the command says, the others serve
 /// its solvers.
-int on_ranks(int argc, char** argv) {
-  const std::vector<std::string_view> words(argv + 1, argv + argc);
+int on_ranks(const std::vector<std::string>& words) {
   // The run that a batch starts inherits the rank.
   if (!words.empty() && words[0] == "batch" && std::ranges::find(words, "--only") != words.end())
-    return guarded(argc, argv);
+    return guarded(words);
   if (words.empty() || (words[0] != "run" && words[0] != "bench")) {
     const ExitCode code = ExitCode::bad_input;
     if (launched_rank() != 0) return static_cast<int>(code);
@@ -114,16 +126,22 @@ int on_ranks(int argc, char** argv) {
     if (e.code() == ExitCode::bad_input && launched_rank() != 0) return static_cast<int>(e.code());
     return fail(e.code(), e.what());
   }
-  const int code = guarded(argc, argv);
+  const int code = guarded(words);
   end_world(code);
   return code;
 }
 
 }  // namespace
+
+Ending execute(const std::vector<std::string>& words) {
+  return ending_of([&] { return run_main(words); });
+}
+
 }  // namespace pbf::app_module
 
 int main(int argc, char** argv) {
   pbf::hold_standard_streams();
   pbf::see_failed_writes();
-  return pbf::launched_ranks() > 1 ? pbf::on_ranks(argc, argv) : pbf::guarded(argc, argv);
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  return pbf::launched_ranks() > 1 ? pbf::on_ranks(words) : pbf::guarded(words);
 }

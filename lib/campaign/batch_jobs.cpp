@@ -1,118 +1,182 @@
 #include "lib/campaign/batch_jobs.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <poll.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <thread>
+#include <deque>
+#include <map>
+#include <memory>
 
 #include "lib/base/error.h"
-#include "lib/run/signals.h"
+#include "lib/base/machine.h"
+#include "lib/campaign/job_server.h"
 
 namespace pbf::campaign_module {
 namespace {
 
-/// The error message in the text that a child wrote to stderr.
-std::string error_line(int fd) {
-  std::ifstream in("/proc/self/fd/" + std::to_string(fd));  // from its first byte
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  const std::string mark = "pbf: error: ";
-  const std::size_t at = text.rfind(mark);
-  if (at == std::string::npos) return {};
-  std::string line = text.substr(at + mark.size());
-  line.erase(line.find_last_not_of('\n') + 1);
-  std::ranges::replace(line, '\n', ' ');
-  return line;
-}
+constexpr int kLookEvery = 10;       // ms, whether a process has ended
+constexpr int kLostInARow = 3;       // servers without a success, before there are no more
+constexpr double kMostMemory = 0.9;  // of what is free, for jobs that share a process
+constexpr double kNoLimit = 1e30;    // bytes
 
-struct Job {
-  pid_t pid;
-  std::size_t index;
-  int err;  // file descriptor of its stderr
+class Jobs {
+ public:
+  Jobs(const JobLimits& limits, const std::vector<JobNeeds>& needs,
+       const std::function<std::vector<std::string>(std::size_t)>& args,
+       const std::function<bool()>& stop,
+       const std::function<void(std::size_t, const JobEnd&)>& ended)
+      : limits_(limits), needs_(needs), args_(args), stop_(stop), ended_(ended) {
+    for (std::size_t k = 0; k < needs.size(); ++k)
+      (needs[k].shares ? shared_ : alone_).push_back(k);
+  }
+
+  void run() {
+    while (!running_.empty() || under_way() > 0 ||
+           (!(alone_.empty() && shared_.empty()) && !stop_())) {
+      if (stop_()) {
+        terminate();
+      } else {
+        give();
+        start();
+      }
+      const bool looked = look_at_servers(), ended = look_at_processes();
+      if (!looked && !ended) wait();
+    }
+  }
+
+ private:
+  std::size_t under_way() const {
+    std::size_t sum = 0;
+    for (const auto& s : servers_) sum += s->jobs().size();
+    return sum;
+  }
+
+  void terminate() {
+    if (told_) return;
+    for (const auto& [job, child] : running_) child->terminate();
+    for (const auto& s : servers_) s->terminate();
+    told_ = true;
+  }
+
+  /// Starts processes of their own.
+  void start() {
+    while (running_.size() < std::size_t(limits_.alone) && !alone_.empty() && !stop_()) {
+      const std::size_t job = alone_.front();
+      try {
+        running_.emplace(job, std::make_unique<Child>(args_(job)));
+      } catch (const Error&) {
+        if (running_.empty()) throw;
+        break;  // continue with fewer processes: the next one waits until one ends
+      }
+      alone_.pop_front();
+    }
+  }
+
+  /// Without servers all jobs are alone.
+  void share_no_more() {
+    alone_.insert(alone_.end(), shared_.begin(), shared_.end());
+    shared_.clear();
+  }
+  void serve(int device) {
+    try {
+      servers_.push_back(std::make_unique<JobServer>(device));
+    } catch (const Error&) {
+      lost_ = kLostInARow;
+    }
+  }
+
+  /// Gives jobs to servers, and starts those.
+  void give() {
+    if (shared_.empty()) return;
+    if (lost_ >= kLostInARow) return share_no_more();
+    for (int d = 0; d < devices_; ++d)
+      if (std::ranges::none_of(servers_, [&](const auto& s) { return s->device() == d; })) serve(d);
+    for (const auto& s : servers_) {
+      if (!s->takes_jobs()) continue;
+      devices_ = std::max(devices_, s->devices());
+      while (!shared_.empty() && !stop_() && has_room(*s, shared_.front())) {
+        const std::size_t job = shared_.front();
+        shared_.pop_front();
+        if ((s->devices() == 0 && needs_[job].device) || !s->give(job, args_(job)))
+          alone_.push_back(job);
+      }
+    }
+  }
+
+  bool has_room(const JobServer& s, std::size_t job) const {
+    if (s.jobs().empty()) return true;
+    JobNeeds sum = needs_[job];
+    std::int64_t before = 0;
+    for (const std::size_t k : s.jobs()) {
+      before += needs_[k].particles;
+      sum.device_bytes += needs_[k].device_bytes;
+      sum.host_bytes += needs_[k].host_bytes;
+    }
+    return s.jobs().size() < std::size_t(limits_.shared) && before < limits_.particles &&
+           double(sum.device_bytes) <
+               kMostMemory * (s.devices() > 0 ? double(s.free_bytes()) : kNoLimit) &&
+           double(sum.host_bytes) * double(servers_.size()) < kMostMemory * host_;
+  }
+
+  bool look_at_servers() {
+    bool any = false;
+    for (const auto& s : servers_)
+      any |= s->look([&](std::size_t job, const JobEnd& end) { server_told(*s, job, end); });
+    std::erase_if(servers_, [&](const std::unique_ptr<JobServer>& s) {
+      if (!s->gone()) return false;
+      for (const std::size_t job : s->jobs()) alone_.push_back(job);
+      if (!s->jobs().empty() || !s->ready()) ++lost_;
+      any = true;
+      return true;
+    });
+    return any;
+  }
+  void server_told(JobServer& s, std::size_t job, const JobEnd& end) {
+    const bool doubtful = end.code == static_cast<int>(ExitCode::internal) ||
+                          end.code == static_cast<int>(ExitCode::unavailable);
+    if (!doubtful) {
+      lost_ = 0;
+      return ended_(job, end);
+    }
+    alone_.push_back(job);
+    if (s.takes_jobs()) ++lost_;
+    s.end();  // its GPU may be of no more use
+  }
+
+  bool look_at_processes() {
+    return std::erase_if(running_, [&](const auto& r) {
+             const std::optional<JobEnd> end = r.second->end();
+             if (end) ended_(r.first, *end);
+             return end.has_value();
+           }) > 0;
+  }
+
+  void wait() const {
+    std::vector<pollfd> all;
+    for (const auto& s : servers_) all.push_back({s->fd(), POLLIN, 0});
+    ::poll(all.data(), all.size(), kLookEvery);
+  }
+
+  const JobLimits& limits_;
+  const std::vector<JobNeeds>& needs_;
+  const std::function<std::vector<std::string>(std::size_t)>& args_;
+  const std::function<bool()>& stop_;
+  const std::function<void(std::size_t, const JobEnd&)>& ended_;
+  std::deque<std::size_t> alone_, shared_;  ///< not started yet
+  std::map<std::size_t, std::unique_ptr<Child>> running_;
+  std::vector<std::unique_ptr<JobServer>> servers_;
+  const double host_ = available_memory() > 0 ? double(available_memory()) : kNoLimit;
+  int lost_ = 0, devices_ = 1;  ///< servers lost in a row; GPUs, as the first server says
+  bool told_ = false;
 };
-
-Job start(std::size_t index, const std::vector<std::string>& args) {
-  // Allocate everything before the fork: only system calls may follow it.
-  std::vector<std::string> texts{"pbf"};
-  texts.insert(texts.end(), args.begin(), args.end());
-  std::vector<char*> argv;
-  for (std::string& t : texts) argv.push_back(t.data());
-  argv.push_back(nullptr);
-  const int err = memfd_create("pbf-batch", MFD_CLOEXEC);
-  const int out = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  const pid_t parent = getpid();
-  const HeldSignals held;  // a signal may come before the run has its handlers
-  const pid_t pid = err < 0 || out < 0 ? -1 : fork();
-  if (pid < 0) {
-    const int reason = errno;
-    for (const int fd : {err, out})
-      if (fd >= 0) ::close(fd);
-    throw Error(ExitCode::unavailable,
-                std::string("batch: no process can be started: ") + std::strerror(reason) +
-                    "; raise the limit on processes (ulimit -u, or pids of a container), or lower "
-                    "--jobs");
-  }
-  if (pid == 0) {
-    setpgid(0, 0);  // Ctrl-C in the terminal reaches only the batch, which forwards it
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(1);
-    execv("/proc/self/exe", argv.data());
-    _exit(1);
-  }
-  ::close(out);
-  return {pid, index, err};
-}
 
 }  // namespace
 
-void run_jobs(int jobs, std::size_t count,
+void run_jobs(const JobLimits& limits, const std::vector<JobNeeds>& needs,
               const std::function<std::vector<std::string>(std::size_t)>& args,
               const std::function<bool()>& stop,
               const std::function<void(std::size_t, const JobEnd&)>& ended) {
-  std::vector<Job> running;
-  std::size_t next = 0;
-  bool told = false;
-  while (!running.empty() || (next < count && !stop())) {
-    while (running.size() < std::size_t(jobs) && next < count && !stop()) {
-      try {
-        running.push_back(start(next, args(next)));
-      } catch (const Error&) {
-        if (running.empty()) throw;
-        break;  // continue with fewer processes: the next one waits until one ends
-      }
-      ++next;
-    }
-    if (stop() && !told) {
-      for (const Job& j : running) ::kill(j.pid, SIGTERM);
-      told = true;
-    }
-    bool any = false;
-    for (std::size_t k = 0; k < running.size();) {
-      int status = 0;
-      if (::waitpid(running[k].pid, &status, WNOHANG) != running[k].pid) {
-        ++k;
-        continue;
-      }
-      any = true;
-      const Job job = running[k];
-      running.erase(running.begin() + static_cast<std::ptrdiff_t>(k));
-      JobEnd end;
-      end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      end.message = error_line(job.err);
-      ::close(job.err);
-      ended(job.index, end);
-    }
-    if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  Jobs(limits, needs, args, stop, ended).run();
 }
 
 }  // namespace pbf::campaign_module

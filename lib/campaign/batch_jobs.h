@@ -1,25 +1,40 @@
-// Child processes of `pbf batch`, with a limit on how many run at the same time.
+// The jobs of `pbf batch` in other processes, with limits on how many run at the same time: each in
+// a process of its own, or several in one that keeps its GPU ready (job_server.h).
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "lib/campaign/child.h"
+
 namespace pbf::campaign_module {
 
-/// How a child ended.
-struct JobEnd {
-  int code = 0;         ///< exit code; 128 + signal when a signal ended it
-  std::string message;  ///< the line after "pbf: error: " on stderr; may be empty
+/// What a job takes, as `pbf plan` forecasts it.
+struct JobNeeds {
+  bool shares = false;  ///< a process with others
+  bool device = false;  ///< needs a GPU
+  std::int64_t particles = 0, host_bytes = 0, device_bytes = 0;
 };
 
-/// Runs this program with other arguments in child processes, at most `jobs` at a time. A child
-/// gets SIGTERM when this process ends, in any way. Starts job k for k = 0 .. count-1 with the
-/// arguments args(k). Once stop() is true, starts no more, sends SIGTERM once to the running jobs
-/// and waits for them. Calls ended(k, end) after each job. Throws Error(unavailable) if no process
-/// can be started.
-void run_jobs(int jobs, std::size_t count,
+/// How many run at the same time.
+struct JobLimits {
+  int alone = 1;   ///< in processes of their own
+  int shared = 8;  ///< in each process that several share
+  /// There, another one starts while those under way have fewer particles than this together: more
+  /// would only wait for each other.
+  std::int64_t particles = 300000;
+};
+
+/// Runs this program with other arguments in other processes. They get SIGTERM when this one ends,
+/// in any way. Starts job k for k = 0 .. needs.size() - 1 with the arguments args(k). Once stop()
+/// is true, starts no more, sends SIGTERM once to all and waits for them. Calls ended(k, end) after
+/// each job. Jobs that share a process lose nothing by each other: what was under way in one that
+/// died, or ended there with an error of the program or the machine, is run again by itself, and
+/// that end counts. Throws Error(unavailable) if no process can be started.
+void run_jobs(const JobLimits& limits, const std::vector<JobNeeds>& needs,
               const std::function<std::vector<std::string>(std::size_t)>& args,
               const std::function<bool()>& stop,
               const std::function<void(std::size_t, const JobEnd&)>& ended);

@@ -107,18 +107,21 @@ void name_all(std::vector<BatchMember>& all) {
   }
 }
 
-void add_needs(const BatchMember& m, std::vector<std::string> overrides,
-               const std::string& base_folder, bool here, int ranks, BatchNeeds& needs) {
+JobNeeds needs_of(const BatchMember& m, std::vector<std::string> overrides,
+                  const std::string& base_folder, bool here, int ranks) {
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
   const Start start = prepare(load_scene_or_run(m.scene, overrides, base_folder),
                               {.fits = here, .particles = false, .measured = true});
-  std::int64_t host_bytes = start.plan.memory.host_peak();
+  JobNeeds needs;
+  needs.device = about(start.scene().backend).on_device;
+  needs.particles = start.plan.particles;
+  needs.host_bytes = start.plan.memory.host_peak();
+  needs.device_bytes = start.plan.memory.device_arrays;
   if (ranks > 1) {
     require_ranks(start.scene(), start.plan, ranks);
-    host_bytes = plan_ranks(start.plan, start.scene(), ranks).first_bytes;
+    needs.host_bytes = plan_ranks(start.plan, start.scene(), ranks).first_bytes;
   }
-  needs.host_bytes = std::max(needs.host_bytes, host_bytes);
-  needs.device |= about(start.scene().backend).on_device;
+  return needs;
 }
 
 }  // namespace
@@ -165,15 +168,15 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
   return all;
 }
 
-BatchNeeds check_members(const std::vector<BatchMember>& members,
-                         const std::vector<std::string>& overrides, const std::string& base_folder,
-                         bool here, int ranks) {
-  BatchNeeds needs;
+std::vector<JobNeeds> check_members(const std::vector<BatchMember>& members,
+                                    const std::vector<std::string>& overrides,
+                                    const std::string& base_folder, bool here, int ranks) {
+  std::vector<JobNeeds> needs;
   std::optional<ExitCode> code;
   std::size_t bad = 0;
   std::string text;
   for (const BatchMember& m : members) try {
-      add_needs(m, overrides, base_folder, here, ranks, needs);
+      needs.push_back(needs_of(m, overrides, base_folder, here, ranks));
     } catch (const Error& e) {
       if (!code) code = e.code();
       if (++bad <= kMostTold) text += "\n  " + m.name + ": " + e.what();

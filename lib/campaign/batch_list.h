@@ -2,10 +2,10 @@
 // of them before the first one starts.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/grid.h"
 
 namespace pbf::campaign_module {
@@ -29,18 +29,12 @@ GridAxis parse_axis(const std::string& text);
 /// fastest. Throws Error(bad_input) with file and line.
 std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes);
 
-/// The needs of the most demanding run of a batch, as `pbf plan` forecasts them.
-struct BatchNeeds {
-  std::int64_t host_bytes = 0;  ///< peak of one run; of several ranks that of rank 0
-  bool device = false;          ///< whether a run uses a device
-};
-
 /// Reads and plans every run, with `overrides` (key.path=value) applied before its own;
 /// `base_folder` as in load_scene(). `here`: every run must fit into the memory of this machine.
-/// ranks: of each run. If runs cannot run, throws Error with the code of the first, naming up to
-/// ten of them with their messages.
-BatchNeeds check_members(const std::vector<BatchMember>& members,
-                         const std::vector<std::string>& overrides, const std::string& base_folder,
-                         bool here, int ranks = 1);
+/// ranks: of each run; host_bytes are then those of rank 0. If runs cannot run, throws Error with
+/// the code of the first, naming up to ten of them with their messages.
+std::vector<JobNeeds> check_members(const std::vector<BatchMember>& members,
+                                    const std::vector<std::string>& overrides,
+                                    const std::string& base_folder, bool here, int ranks = 1);
 
 }  // namespace pbf::campaign_module

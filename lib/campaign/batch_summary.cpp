@@ -137,17 +137,17 @@ Results read_results(const BatchMember& m, const std::string& out_folder,
   std::error_code error;
   if (std::filesystem::exists(path, error)) try {
       const RunReader file(path);
+      std::map<std::string, std::vector<double>> log = file.log();
       for (std::size_t k = 0; k < names.size(); ++k)
-        if (const auto column = file.log_column(names[k]); !column.empty())
-          cells[k] = column.back();
+        if (!log[names[k]].empty()) cells[k] = log[names[k]].back();
       const RunInfo info = file.info();
       cells[names.size()] = info.particles;
       cells[names.size() + 1] = file.frames();
       cells[names.size() + 2] = std::int64_t(info.warnings.size());
       double seconds = 0;
-      for (const std::string& name : file.log_columns())
-        if (name.rfind("stage/", 0) == 0)
-          for (const double s : file.log_column(name)) seconds += s;
+      for (const auto& [name, column] : log)
+        if (name.starts_with("stage/"))
+          for (const double s : column) seconds += s;
       cells.back() = seconds;
       out.compared = compared_in(file);
       read_readings(file, scene_of(now, m, file), out);

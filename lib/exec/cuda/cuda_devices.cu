@@ -32,4 +32,12 @@ std::string cuda_device_report() {
   return out;
 }
 
+DeviceRoom device_room() {
+  int count = 0;
+  std::size_t free = 0, total = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) return {};
+  if (cudaMemGetInfo(&free, &total) != cudaSuccess) return {};
+  return {count, std::int64_t(free)};
+}
+
 }  // namespace pbf::exec_module
