@@ -9,7 +9,6 @@
 #include "lib/base/plain_text.h"
 #include "lib/data/probe.h"
 #include "lib/io/run_path.h"
-#include "lib/run/linked_files.h"
 #include "lib/run/load_run.h"
 
 namespace pbf::app_module {
@@ -42,10 +41,7 @@ int command_probe(const ProbeOptions& o) {
   const RunInfo info = file.info();
   Scene scene = scene_with_gauges(info, path, o.gauges);
   check_output("--out", o.out);
-  Scene solids = scene;  // those of bodies are not needed
-  solids.bodies.clear();
-  read_linked_files(
-      scene, linked_paths(scene).empty() ? "" : folder_of_files(solids, path, info.scene_path));
+  read_files_of_run(scene, path, info.scene_path);
   const auto [table, units] = probe(file, scene);
   const std::string text = "# source: " + one_line("run " + o.run + ", gauges " + o.gauges, 1000) +
                            "\n# units: " + one_line(units, 100000) + "\n" + table.csv();

@@ -12,9 +12,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
-#include "lib/run/linked_files.h"
 #include "lib/run/load_run.h"
-#include "lib/run/wave_files.h"
 #include "lib/scene/load.h"
 #ifdef PBF_HAS_RENDER
 #include "lib/render/quantile_range.h"
@@ -208,11 +206,7 @@ int command_render(const RenderOptions& options) {
   const RunReader reader(run);
   const RunInfo info = reader.info();
   Scene scene = parse_stored_scene(info.resolved_scene, run + " (the scene stored in it)", {});
-  // Pictures need the tables of motions and the surfaces of obstacles, no particles of files.
-  if (!linked_paths(scene).empty())
-    read_linked_files(scene, folder_of_files(scene, run, info.scene_path));
-  else
-    make_wave_tables(scene);
+  read_files_of_run(scene, run, info.scene_path);
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
   const std::filesystem::path folder = options.out.empty()

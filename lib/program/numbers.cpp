@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/program/motion.h"
+#include "lib/program/start_level.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/body_box.h"
 #include "lib/scene/surface.h"
@@ -16,29 +17,31 @@ namespace {
 
 constexpr double kTension = 0.072;  // N/m, of water
 
-}  // namespace
+/// What the numbers are made of, SI units.
+struct FlowSizes {
+  double depth = 0;  ///< m, of the highest body of fluid
+  double tank = 0;   ///< m, longest level edge of the domain
+  double width = 0;  ///< m, least extent of an obstacle that is a box; 0: none
+  double speed = 0;  ///< m/s, U of scene_numbers()
+};
 
 FlowSizes flow_sizes(const Scene& s) {
   FlowSizes z;
   const auto down = std::size_t(level_axis(s));
-  double area = 1, held = 0;
   for (const int a : axes_across_level(s)) {
     const double edge = s.domain.max[std::size_t(a)] - s.domain.min[std::size_t(a)];
-    z.tank = std::max(z.tank, edge), area *= edge;
+    z.tank = std::max(z.tank, edge);
   }
   for (const Body& b : s.bodies) {
     if (b.from_file()) continue;
     const BodyBox box = body_box(b);
-    double volume = 1;
-    for (const int a : axes_across_level(s))
-      volume *= box.high[std::size_t(a)] - box.low[std::size_t(a)];
     z.depth = std::max(z.depth, box.high[down] - box.low[down]);
-    held += volume * (box.high[down] - box.low[down]);
     z.speed = std::max(z.speed, length(b.velocity));
   }
   const double g = length(s.gravity);
-  if (g > 0) z.fall = z.depth - held / area;
-  if (z.fall > s.fluid.spacing) z.speed = std::max(z.speed, std::sqrt(g * z.fall));
+  const StartLevel level = g > 0 ? start_level(s) : StartLevel{};
+  const double fall = level.rests ? 0 : level.top - level.rest;
+  if (fall > s.fluid.spacing) z.speed = std::max(z.speed, std::sqrt(g * fall));
   z.speed = std::max(z.speed, fastest_obstacle(s, 0, s.time.end));
   for (const Obstacle& o : s.obstacles) {
     if (const auto* box = std::get_if<obstacle_keys::Box>(&o.shape)) {
@@ -55,6 +58,8 @@ FlowSizes flow_sizes(const Scene& s) {
   }
   return z;
 }
+
+}  // namespace
 
 std::vector<SceneNumber> scene_numbers(const Scene& s) {
   const FlowSizes z = flow_sizes(s);

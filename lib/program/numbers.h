@@ -8,16 +8,6 @@
 
 namespace pbf::program_module {
 
-/// What the numbers are made of, SI units.
-struct FlowSizes {
-  double depth = 0;  ///< m, of the highest body of fluid
-  double tank = 0;   ///< m, longest level edge of the domain
-  double width = 0;  ///< m, least extent of an obstacle that is a box; 0: none
-  double fall = 0;   ///< m, of the highest body to the level at rest
-  double speed = 0;  ///< m/s, U of scene_numbers()
-};
-FlowSizes flow_sizes(const Scene& scene);
-
 struct SceneNumber {
   std::string name;     ///< "D/d"
   std::string formula;  ///< what it is made of

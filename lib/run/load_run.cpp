@@ -69,6 +69,13 @@ LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::s
   return loaded;
 }
 
+void read_files_of_run(Scene& scene, const std::string& run_file, const std::string& scene_path) {
+  Scene solids = scene;
+  solids.bodies.clear();
+  read_linked_files(
+      scene, linked_paths(scene).empty() ? "" : folder_of_files(solids, run_file, scene_path));
+}
+
 void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
                 std::vector<std::string>& notes) {
   if (!loaded.run_file.empty() && !read.empty()) {

@@ -23,6 +23,10 @@ LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::s
 std::string folder_of_files(const Scene& scene, const std::string& run_file,
                             const std::string& scene_path);
 
+/// Reads what obstacles and motions of a run's scene name, and makes the tables of its waves; the
+/// files of bodies need not be there. Throws as folder_of_files() and read_linked_files().
+void read_files_of_run(Scene& scene, const std::string& run_file, const std::string& scene_path);
+
 /// Stores in `loaded` which files were read, for the run. For a scene from a run file they must be
 /// the files of that run: Error(bad_input) names one that has changed. If an older run file has no
 /// record of them, a line is added to `notes`. Files that --set names are not compared.

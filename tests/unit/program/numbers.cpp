@@ -24,6 +24,25 @@ bool has_number(const Scene& s, const std::string& name) {
 
 }  // namespace
 
+TEST_CASE("numbers: fluid falls from where it hangs to the level that obstacles leave it") {
+  const std::vector<std::string> tank{"fluid.spacing=0.02", "domain.max=[2,1,1]"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), tank.begin(), tank.end());
+    return shipped("minimal", more);
+  };
+  // U^2 = g fall, c^2 = g D. Half of the floor, 0.4 m high: 0.2 m at rest.
+  const Scene hangs = with({"bodies.0.min=[0,0,0.5]", "bodies.0.max=[1,1,0.9]"});
+  CHECK(number_of(hangs, "Fr").value == Approx(std::sqrt((0.9 - 0.2) / 0.4)).epsilon(0.01));
+  // 0.5 m high: 0.25 m at rest; with a step of 0.1 m in the other half 0.3 m.
+  const Scene stands = with({"bodies.0.min=[0,0,0]", "bodies.0.max=[1,1,0.5]"});
+  CHECK(number_of(stands, "Fr").value == Approx(std::sqrt(0.25 / 0.5)).epsilon(0.01));
+  Scene step = stands;
+  Obstacle box;
+  box.shape = obstacle_keys::Box{.min = {1, 0, 0}, .max = {2, 1, 0.1}};
+  step.obstacles.push_back(box);
+  CHECK(number_of(step, "Fr").value == Approx(std::sqrt(0.2 / 0.5)).epsilon(0.01));
+}
+
 TEST_CASE("numbers: a dam break has the Reynolds number that the spacing allows, and no waves") {
   const Scene s = shipped("dam_break_over_box", {"fluid.spacing=0.0125"});
   CHECK(number_of(s, "D/d").value == Approx(44));
