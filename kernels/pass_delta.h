@@ -12,8 +12,7 @@ namespace pbf::PBF_VARIANT {
 /// x^n for a small positive integer n, by squaring: the same operations on every backend.
 template <class Real>
 PBF_HD Real power(Real x, int n) {
-  // The paper's exponent; the loop below gives the same bits with more instructions.
-  if (n == 4) [[likely]] {
+  if (n == 4) {  // the paper's exponent; the loop below gives the same bits with more instructions
     x = x * x;
     return x * x;
   }
