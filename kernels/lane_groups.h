@@ -69,20 +69,34 @@ PBF_HD Lanes<double, W> energy_taken(const Vec3<Lanes<Real, W>>& v,
   for (int l = 0; l < W; ++l) r.v[l] = 0.5 * double(twice.v[l]);
   return r;
 }
-/// Whole numbers.
+/// W whole numbers, for the cells of the grid (kernels/cell_index.h).
 template <int W>
 struct LaneInts {
-  int v[W];
+  typedef int Vector __attribute__((vector_size(W * sizeof(int))));
+  typedef int Anywhere
+      __attribute__((vector_size(W * sizeof(int)), aligned(sizeof(int)), may_alias));
+  Vector v;
+
+  LaneInts() = default;
+  PBF_HD explicit LaneInts(int x) : v(Vector{} + x) {}
+  PBF_HD LaneInts(const Vector& x) : v(x) {}
+  friend PBF_HD LaneInts operator+(const LaneInts& a, const LaneInts& b) { return a.v + b.v; }
+  friend PBF_HD LaneInts operator*(const LaneInts& a, int b) { return a.v * b; }
+  friend PBF_HD LaneInts operator*(int a, const LaneInts& b) { return a * b.v; }
+  friend PBF_HD LaneInts operator&(const LaneInts& a, int b) { return a.v & b; }
 };
-template <int D, class Real, int W>
-PBF_HD LaneInts<W> bin_of(const Vec3<Lanes<Real, W>>& x, const Params<Real>& p) {
-  LaneInts<W> r;
-  for (int l = 0; l < W; ++l) r.v[l] = bin_of<D>(Vec3<Real>{x.x.v[l], x.y.v[l], x.z.v[l]}, p);
-  return r;
-}
 template <int W>
 PBF_HD void set_row(OwnRows<int> a, Adjacent<W> i, const LaneInts<W>& value) {
-  for (int l = 0; l < W; ++l) a[i[l]] = value.v[l];
+  *reinterpret_cast<typename LaneInts<W>::Anywhere*>(a.rows() + i.first) = value.v;
+}
+template <class Real, int W>
+PBF_HD LaneInts<W> cell_coordinate(const Lanes<Real, W>& x, Real inv_cell, int cells) {
+  const Lanes<Real, W> s = x * inv_cell;
+  if (holds_everywhere(s >= Real(0) && s < Real(cells)))
+    return __builtin_convertvector(s.v, typename LaneInts<W>::Vector);
+  typename LaneInts<W>::Vector r{};
+  for (int l = 0; l < W; ++l) r[l] = cell_coordinate(Real(x.v[l]), inv_cell, cells);
+  return r;
 }
 
 /// Finishes the particles one at a time. part: component c of lane l is at [c W + l].
@@ -108,7 +122,10 @@ PBF_HD_APART void finish_each(const Pass& pass, int i, int end, const Real* part
 template <int W, class Real, class Pass, class Own, class Sum>
 PBF_HD void finish_group(const Pass& pass, int i, int end, const Own& own, const Sum& sum) {
   Real part[sizeof(sum) / sizeof(Real)];
-  if constexpr (requires { pass.together(sum); }) {
+  if constexpr (requires {
+                  pass.together(sum);
+                  pass.finish(Adjacent<W>{i}, own, sum);
+                }) {
     if (i + W <= end && pass.together(sum)) return pass.finish(Adjacent<W>{i}, own, sum);
     memcpy(part, &sum, sizeof sum);
     finish_each<W>(pass, i, end, part);

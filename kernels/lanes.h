@@ -139,7 +139,7 @@ PBF_HD Vec3<Lanes<Real, W>> mul_add(Real a, const Vec3<Lanes<Real, W>>& b, const
 /// The compiler turns the loop into one instruction.
 template <class Real, int W>
 PBF_HD Lanes<Real, W> square_root(const Lanes<Real, W>& a) {
-  typename Lanes<Real, W>::Vector r;
+  typename Lanes<Real, W>::Vector r{};
   for (int l = 0; l < W; ++l) r[l] = square_root(Real(a.v[l]));
   return r;
 }

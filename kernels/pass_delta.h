@@ -143,7 +143,7 @@ struct DeltaPass {
     const Vec3<V> target = x + move;
     Stop<V> end;
     if constexpr (Boundary::books) {
-      boundary.template book_push<S>(i, x, step(i), p.sor * own.w);
+      boundary.template book_push<S>(i, x, step<V>(i), p.sor * own.w);
       end = boundary.path_end_booked(i, x, target);
     } else {
       end.x = boundary.path_end(x, target);

@@ -84,6 +84,7 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
       std::int64_t(double(at_start(plan)) * std::max(double(entries), start.mean) +
                    double(n - at_start(plan)) * emitted));
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
+  add("columns of coordinates", word(s.precision), s.dimensions, n);
   add("table of lists", "int64", 3, chunks);
   add("neighbors found by each thread", "int32", 1,
       std::min<std::int64_t>(threads, chunks) *
