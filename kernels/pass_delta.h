@@ -68,8 +68,12 @@ struct DeltaPass {
   template <class V>
   PBF_HD V weight(const Vec4<V>& x, const Vec4<V>& y, V q2, V t) const {
     V w = x.w + y.w;
-    if constexpr (tensile)
-      w -= p.tensile_k * power(density_shape<Real, S>(q2, t) * p.tensile_scale, p.tensile_n);
+    if constexpr (tensile) {
+      V close = density_shape<Real, S>(q2, t) * p.tensile_scale;
+      // Its power is below the smallest normal number, for which processors take 100 cycles more.
+      if constexpr (!is_one<V>) close = choose(close < p.tensile_from, V(0), close);
+      w -= p.tensile_k * power(close, p.tensile_n);
+    }
     return w;
   }
   template <class V>

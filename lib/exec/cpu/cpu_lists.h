@@ -21,7 +21,7 @@ class CpuLists : protected CpuThreads {
       : CpuThreads(threads),
         list_entries_(list_entries),
         simd_(simd),
-        scratch_(std::size_t(threads)) {}
+        single_(std::size_t(threads)) {}
 
   /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
   /// std::bad_alloc). far: the row that pads lists.
@@ -42,21 +42,19 @@ class CpuLists : protected CpuThreads {
     groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
     for (int c = rows.first / kChunk; c < chunks; ++c) {
-      ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
-      scratch.reserve(list_entries_);
       const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
       ChunkedLists::Group* groups = groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk);
+      HostBuffer<int>& mine = chunks_[std::size_t(c)];
+      // With the memory of the last update: sizes change little.
+      const std::size_t capacity = std::size_t((last - first) * list_entries_);
+      if (mine.size() < capacity) mine.resize(capacity);
+      std::vector<int>& single = single_[std::size_t(omp_get_thread_num())];
       const std::size_t used = p.dimensions == 2
                                    ? make_lists<2>(simd_, position, columns, bin_start, p, rows.id,
-                                                   first, last, far, groups, scratch)
+                                                   first, last, far, groups, single, mine)
                                    : make_lists<3>(simd_, position, columns, bin_start, p, rows.id,
-                                                   first, last, far, groups, scratch);
-      HostBuffer<int>& mine = chunks_[std::size_t(c)];
-      // Grow with a reserve, shrink only if far too large: sizes change little between updates.
-      const std::size_t capacity = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);
-      if (mine.size() < used || mine.size() > 2 * std::max(used, capacity))
-        mine.resize(used > capacity ? used + used / 16 : capacity);
-      std::copy_n(scratch.found.data(), used, mine.data());  // if used is 0, both may be null
+                                                   first, last, far, groups, single, mine);
+      if (mine.size() > 2 * std::max(used, capacity)) mine.resize(used + used / 8, used);
       pointers_[std::size_t(c)] = mine.data();
     }
     return {pointers_.data(), groups_.data(), bits, far};
@@ -68,7 +66,7 @@ class CpuLists : protected CpuThreads {
     std::size_t sum = groups_.bytes() + columns_.bytes() + chunks_.capacity() * sizeof chunks_[0] +
                       pointers_.capacity() * sizeof pointers_[0];
     for (const auto& c : chunks_) sum += c.bytes();
-    for (const auto& s : scratch_) sum += s.bytes();
+    for (const auto& s : single_) sum += s.capacity() * sizeof s[0];
     return sum;
   }
 
@@ -100,7 +98,7 @@ class CpuLists : protected CpuThreads {
 
   int list_entries_;
   Simd simd_;
-  std::vector<ListScratch> scratch_;  ///< per thread
+  std::vector<std::vector<int>> single_;  ///< per thread, see make_lists()
   std::vector<HostBuffer<int>> chunks_;
   std::vector<const int*> pointers_;
   HostBuffer<ChunkedLists::Group> groups_;

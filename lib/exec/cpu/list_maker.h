@@ -7,6 +7,7 @@
 #include "kernels/neighbors.h"
 #include "kernels/row_state.h"
 #include "lib/exec/cpu/close_pairs.h"
+#include "lib/exec/cpu/host_buffer.h"
 #include "lib/exec/cpu/interleave.h"
 
 namespace pbf::PBF_VARIANT {
@@ -45,25 +46,15 @@ class NearbyBlocks {
   std::size_t most_ = 0;
 };
 
-/// The working memory of one thread.
-struct ListScratch {
-  /// Initial sizes; `entries`: of one list (cpu_scratch_entries).
-  void reserve(int entries) {
-    single.resize(std::max(single.size(), 32 * std::size_t(entries)));
-    found.resize(std::max(found.size(), 1024 * std::size_t(entries)));
-  }
-  std::vector<int> single;  ///< lists of one group, one after the other
-  std::vector<int> found;   ///< interleaved lists of a chunk
-  std::size_t bytes() const { return (single.capacity() + found.capacity()) * sizeof(int); }
-};
-
-/// Writes the lists of particles first..last-1 of one chunk to `scratch.found` and returns the
-/// number of entries, with padding. columns: fill_columns(). groups: those of the chunk's
-/// particles. id: null, or images have empty lists. D: dimensions.
+/// Writes the lists of particles first..last-1 of one chunk to `found`, which grows if it is too
+/// small, and returns the number of entries, with padding. columns: of all candidates. groups:
+/// those of the chunk's particles. id: null, or images have empty lists. single: working memory of
+/// the thread, for the lists of a group one after the other. D: dimensions.
 template <int D, class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const Columns<Real>& columns,
                        const int* bin_start, const Params<Real>& p, const int* id, int first,
-                       int last, int far, ChunkedLists::Group* groups, ListScratch& scratch) {
+                       int last, int far, ChunkedLists::Group* groups, std::vector<int>& single,
+                       HostBuffer<int>& found) {
   const int bits = lane_bits(simd, sizeof(Real)), width = 1 << bits;
   NearbyBlocks<D, Real> nearby(simd);
   std::size_t used = 0;
@@ -75,19 +66,20 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const Columns<Real
       if (i + l < last && !(id && is_image(id[i + l]))) {
         const Vec3<Real> x = xyz(position[i + l]);
         const Blocks& blocks = nearby.of(x, bin_start, p);
-        make_room(scratch.single, at + nearby.most() + 2 * kAtOnce);
-        int* out = scratch.single.data() + at;
+        make_room(single, at + nearby.most() + 2 * kAtOnce);
+        int* out = single.data() + at;
         lists.size[l] = int(close_to<D>(simd, columns, blocks, x, i + l, out) - out);
         lists.longest = std::max(lists.longest, lists.size[l]);
       }
-      make_room(scratch.single, at + kAtOnce);
+      make_room(single, at + kAtOnce);
       at += std::size_t(lists.size[l]);
-      std::fill_n(scratch.single.data() + at, kAtOnce, far);
+      std::fill_n(single.data() + at, kAtOnce, far);
       at += kAtOnce;
     }
     groups[(i - first) >> bits] = {std::uint32_t(used), std::uint32_t(lists.longest)};
-    make_room(scratch.found, used + (std::size_t(lists.longest) + kAtOnce) * std::size_t(width));
-    interleave(simd, bits, scratch.single.data(), lists, far, scratch.found.data() + used);
+    const std::size_t needed = used + (std::size_t(lists.longest) + kAtOnce) * std::size_t(width);
+    if (found.size() < needed) found.resize(needed + needed / 8, used);
+    interleave(simd, bits, single.data(), lists, far, found.data() + used);
     used += std::size_t(lists.longest) << bits;
   }
   return used;
