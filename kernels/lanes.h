@@ -60,7 +60,8 @@ struct Lanes {
   Lanes() = default;  ///< value-initialized to zero, as Real is
   /// Written as a sum, which compilers turn into one addition and a broadcast. A plain copy becomes
   /// W insertions if this is inlined into a function for wider registers. The sum turns -0 into 0,
-  /// which changes no sum over neighbors.
+  /// which changes no sum over neighbors; after the sums, only gravity may be -0, in the position
+  /// of which a bin is taken.
   PBF_HD Lanes(Real x) : v(Vector{} + x) {}
   PBF_HD Lanes(const Vector& x) : v(x) {}
   /// from[0] .. from[W - 1], at any address.

@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2570},        {"kernels", 7740},  {"lib/base", 1850},   {"lib/campaign", 4060},
-    {"lib/data", 1590},   {"lib/exec", 6900}, {"lib/io", 4240},     {"lib/program", 9660},
-    {"lib/render", 3950}, {"lib/run", 6430},  {"lib/scene", 10550}, {"lib/solver", 3070},
+    {"app", 2570},        {"kernels", 8080},  {"lib/base", 1850},   {"lib/campaign", 4060},
+    {"lib/data", 1590},   {"lib/exec", 7040}, {"lib/io", 4240},     {"lib/program", 9660},
+    {"lib/render", 3950}, {"lib/run", 6430},  {"lib/scene", 10550}, {"lib/solver", 3080},
     {"lib/verify", 2160},
 };
 constexpr int kLongestFile = 300;

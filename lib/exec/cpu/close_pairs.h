@@ -85,15 +85,16 @@ PBF_HD Lanes<Real, W> squared_distances(const Columns<Real>& c, int k, Vec3<Real
 /// returns the end of them; may overwrite up to 16 entries beyond that end.
 template <class Real, int D>
 int* close_to(const Columns<Real>& c, const Blocks& blocks, Vec3<Real> x, int self, int* out) {
+  constexpr int width = 16 / int(sizeof(Real));
   for (const Block& b : blocks) {
-    for (int j = b.first; j < b.first + int(b.rows); ++j) {
-      Vec<Real, D> d;
-      if constexpr (D == 2)
-        d = {x.x - c.x[j], x.z - c.z[j]};
-      else
-        d = x - Vec3<Real>{c.x[j], c.y[j], c.z[j]};
-      *out = j;
-      out += (dot(d, d) < Real(kCutoffSquared)) & (j != self);
+    const int end = b.first + int(b.rows);
+    for (int j = b.first; j < end; j += width) {
+      Real q2[width];
+      squared_distances<Real, width, D>(c, j, x).to(q2);
+      for (int m = 0; m < width; ++m) {
+        *out = j + m;
+        out += (q2[m] < Real(kCutoffSquared)) & (j + m != self) & (j + m < end);
+      }
     }
   }
   return out;

@@ -1,7 +1,9 @@
 // Interleaves the lists of a group of particles (kernels/neighbors.h, ChunkedLists).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "kernels/lanes.h"
 #include "lib/program/simd.h"
@@ -69,9 +71,9 @@ inline void interleave(Simd simd, int bits, const int* single, const GroupLists&
       return interleave_by_avx512(bits, single, lists, far, to);
 #endif
     default:
-      for (int l = 0; l < 1 << bits; ++l)
-        for (int k = 0; k < lists.longest; ++k)
-          to[(k << bits) + l] = k < lists.size[l] ? single[lists.begin[l] + std::size_t(k)] : far;
+      if (bits == 2) return interleave_by_lanes<4>(single, lists, far, to);
+      if (bits == 1) return interleave_by_lanes<2>(single, lists, far, to);
+      std::copy_n(single + lists.begin[0], lists.longest, to);
   }
 }
 
