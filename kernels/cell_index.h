@@ -21,16 +21,20 @@ PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
   return c < cells ? c : 2 * cells - 1 - c;
 }
 
-/// x counts half cells, so the runs of candidates below are 2.5 cells long instead of 3.
-struct GridCell {
-  int x, y, z;
+/// x counts half cells, so the runs of candidates below are 2.5 cells long instead of 3. Int: int,
+/// or several of them (kernels/lanes.h).
+template <class Int>
+struct GridCellOf {
+  Int x, y, z;
 };
+using GridCell = GridCellOf<int>;
 
-template <int D, class Real>
-PBF_HD GridCell cell_of(Vec3<Real> x, const Params<Real>& p) {
-  return {cell_coordinate(x.x + p.below.x, p.inv_cell + p.inv_cell, p.cells_x),
-          D == 2 ? 0 : cell_coordinate(x.y + p.below.y, p.inv_cell, p.cells_y),
-          cell_coordinate(x.z + p.below.z, p.inv_cell, p.cells_z)};
+template <int D, class V, class Real>
+PBF_HD auto cell_of(Vec3<V> x, const Params<Real>& p) {
+  using Int = decltype(cell_coordinate(x.x, p.inv_cell, p.cells_x));
+  return GridCellOf<Int>{cell_coordinate(x.x + p.below.x, p.inv_cell + p.inv_cell, p.cells_x),
+                         D == 2 ? Int(0) : cell_coordinate(x.y + p.below.y, p.inv_cell, p.cells_y),
+                         cell_coordinate(x.z + p.below.z, p.inv_cell, p.cells_z)};
 }
 
 /// Bins of a half cell: the quarters of its y-z face, in two dimensions the halves of its z edge.
@@ -38,17 +42,17 @@ PBF_HD GridCell cell_of(Vec3<Real> x, const Params<Real>& p) {
 /// share most of their neighbors.
 constexpr int bins_per_cell(int dimensions) { return dimensions == 2 ? 2 : 4; }
 
-template <int D, class Real>
-PBF_HD int bin_of(Vec3<Real> x, const Params<Real>& p) {
-  const GridCell c = cell_of<D>(x, p);
+template <int D, class V, class Real>
+PBF_HD auto bin_of(Vec3<V> x, const Params<Real>& p) {
+  const auto c = cell_of<D>(x, p);
   const Real twice = p.inv_cell + p.inv_cell;
+  const auto z = cell_coordinate(x.z + p.below.z, twice, 2 * p.cells_z) & 1;
   if constexpr (D == 2) {
-    const int z = cell_coordinate(x.z + p.below.z, twice, 2 * p.cells_z) & 1;
     return (c.z * p.cells_x + c.x) * bins_per_cell(D) + z;
+  } else {
+    const auto y = cell_coordinate(x.y + p.below.y, twice, 2 * p.cells_y) & 1;
+    return ((c.z * p.cells_y + c.y) * p.cells_x + c.x) * bins_per_cell(D) + 2 * z + y;
   }
-  const int y = cell_coordinate(x.y + p.below.y, twice, 2 * p.cells_y) & 1;
-  const int z = cell_coordinate(x.z + p.below.z, twice, 2 * p.cells_z) & 1;
-  return ((c.z * p.cells_y + c.y) * p.cells_x + c.x) * bins_per_cell(D) + 2 * z + y;
 }
 
 template <class Real>

@@ -48,16 +48,32 @@ struct DissipationBook {
 
   /// taken: h^2/s^2 per mass of the particle in row i; negative if the pass gave it.
   PBF_HD void add(int i, double taken) const {
+    if (sums) add_units(i, units(taken));
+  }
+  /// The same for a group of adjacent rows (kernels/lanes.h), whose number divides 256: one
+  /// addition for all. A processor takes tens of cycles for each.
+  template <class Group, class V>
+  PBF_HD void add(Group rows, const V& taken) const {
     if (!sums) return;
+    std::int64_t all = 0;
+    for (int l = 0; l < V::width; ++l) all += units(taken.v[l]);
+    add_units(rows[0], all);
+  }
+
+ private:
+  PBF_HD std::int64_t units(double taken) const {
     const double x = taken * inv_unit;
     // Not for NaN.
     const double bounded = x < -kMostDissipation  ? -kMostDissipation
                            : x > kMostDissipation ? kMostDissipation
                            : x == x               ? x
                                                   : 0;
+    return std::int64_t(bounded * kDissipationUnits);
+  }
+  PBF_HD void add_units(int i, std::int64_t term) const {
     constexpr int bits = DissipationSum::bits;
     DissipationSum& sum = sums[(i >> 8) & last];
-    const std::int64_t t = sum_of_warp(&sum, std::int64_t(bounded * kDissipationUnits));
+    const std::int64_t t = sum_of_warp(&sum, term);
     if (const std::int64_t whole = t >> bits; whole != 0) add_whole(&sum.whole, whole);
     if (const std::int64_t rest = t & ((std::int64_t(1) << bits) - 1); rest != 0)
       add_whole(&sum.rest, rest);

@@ -12,16 +12,56 @@
 
 namespace pbf::PBF_VARIANT {
 
+/// A condition for each of W particles: 1 where it holds, elsewhere a small number. Numbers,
+/// because GCC splits vectors of integers that are the result of a comparison into single ones,
+/// unless they only choose between two vectors. Not 0, because it then makes the product one of
+/// integers.
+template <class Real, int W>
+struct LaneMask {
+  typedef Real Vector __attribute__((vector_size(W * sizeof(Real))));
+  static constexpr Real no = Real(0x1p-10), half = Real(0.5);
+  Vector v;
+
+  friend PBF_HD LaneMask operator!(const LaneMask& a) {
+    return {a.v > half ? Vector{} + no : Vector{} + Real(1)};
+  }
+  friend PBF_HD LaneMask operator&&(const LaneMask& a, const LaneMask& b) { return {a.v * b.v}; }
+  friend PBF_HD LaneMask operator||(bool a, const LaneMask& b) {
+    return a ? LaneMask{Vector{} + Real(1)} : b;
+  }
+};
+/// Adds by halves, so that no lane is read alone.
+template <class Real, int W>
+PBF_HD bool holds_somewhere(const LaneMask<Real, W>& a) {
+  if constexpr (W == 2) {
+    return a.v[0] + a.v[1] > a.half;
+  } else {
+    return [&]<int... l>(std::integer_sequence<int, l...>) __attribute__((always_inline)) {
+      return holds_somewhere(
+          LaneMask<Real, W / 2>{__builtin_shufflevector(a.v, a.v, l...) +
+                                __builtin_shufflevector(a.v, a.v, W / 2 + l...)});
+    }
+    (std::make_integer_sequence<int, W / 2>{});
+  }
+}
+template <class Real, int W>
+PBF_HD bool holds_everywhere(const LaneMask<Real, W>& a) {
+  return !holds_somewhere(!a);
+}
+
 /// W numbers; a plain number is converted to W equal ones.
 template <class Real, int W>
 struct Lanes {
+  static constexpr int width = W;
   typedef Real Vector __attribute__((vector_size(W * sizeof(Real))));
+  using Mask = LaneMask<Real, W>;
   Vector v;
 
   Lanes() = default;  ///< value-initialized to zero, as Real is
   /// Written as a sum, which compilers turn into one addition and a broadcast. A plain copy becomes
   /// W insertions if this is inlined into a function for wider registers. The sum turns -0 into 0,
-  /// which changes no sum over neighbors.
+  /// which changes no sum over neighbors; after the sums, only gravity may be -0, in the position
+  /// of which a bin is taken.
   PBF_HD Lanes(Real x) : v(Vector{} + x) {}
   PBF_HD Lanes(const Vector& x) : v(x) {}
   /// from[0] .. from[W - 1], at any address.
@@ -34,6 +74,19 @@ struct Lanes {
   friend PBF_HD Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
   friend PBF_HD Lanes operator*(const Lanes& a, const Lanes& b) { return a.v * b.v; }
   friend PBF_HD Lanes operator/(const Lanes& a, const Lanes& b) { return a.v / b.v; }
+  friend PBF_HD Lanes operator-(const Lanes& a) { return -a.v; }
+  friend PBF_HD Mask operator<(const Lanes& a, const Lanes& b) {
+    return {a.v < b.v ? Vector{} + Real(1) : Vector{} + Mask::no};
+  }
+  friend PBF_HD Mask operator>(const Lanes& a, const Lanes& b) {
+    return {a.v > b.v ? Vector{} + Real(1) : Vector{} + Mask::no};
+  }
+  friend PBF_HD Mask operator<=(const Lanes& a, const Lanes& b) {
+    return {a.v <= b.v ? Vector{} + Real(1) : Vector{} + Mask::no};
+  }
+  friend PBF_HD Mask operator>=(const Lanes& a, const Lanes& b) {
+    return {a.v >= b.v ? Vector{} + Real(1) : Vector{} + Mask::no};
+  }
   PBF_HD Lanes& operator+=(const Lanes& a) { return *this = *this + a; }
   PBF_HD Lanes& operator-=(const Lanes& a) { return *this = *this - a; }
 
@@ -44,12 +97,50 @@ struct Lanes {
 
 template <class Real, int W>
 PBF_HD Lanes<Real, W> max2(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
+#if defined(__x86_64__) && !defined(__clang__)
+  // GCC takes two instructions, a comparison and a choice. This one gives b, too, if a number is
+  // NaN or both are zero.
+  if constexpr (W * sizeof(Real) > 16) {
+    typename Lanes<Real, W>::Vector r;
+    if constexpr (sizeof(Real) == 4)
+      asm("vmaxps %2, %1, %0" : "=v"(r) : "v"(a.v), "v"(b.v));
+    else
+      asm("vmaxpd %2, %1, %0" : "=v"(r) : "v"(a.v), "v"(b.v));
+    return r;
+  }
+#endif
   return typename Lanes<Real, W>::Vector(a.v > b.v ? a.v : b.v);
+}
+template <class Real, int W>
+PBF_HD Lanes<Real, W> min2(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
+  return typename Lanes<Real, W>::Vector(a.v < b.v ? a.v : b.v);
+}
+template <class Real, int W>
+PBF_HD Lanes<Real, W> choose(const LaneMask<Real, W>& c, const Lanes<Real, W>& a,
+                             const Lanes<Real, W>& b) {
+  return typename Lanes<Real, W>::Vector(c.v > c.half ? a.v : b.v);
+}
+template <class Real, int W>
+PBF_HD Vec3<Lanes<Real, W>> operator*(Real s, const Vec3<Lanes<Real, W>>& a) {
+  return Lanes<Real, W>(s) * a;
+}
+template <class Real, int W>
+PBF_HD Vec2<Lanes<Real, W>> operator*(Real s, const Vec2<Lanes<Real, W>>& a) {
+  return Lanes<Real, W>(s) * a;
+}
+template <class Real, int W>
+PBF_HD Vec3<Lanes<Real, W>> mul_add(Real a, const Vec3<Lanes<Real, W>>& b,
+                                    const Vec3<Lanes<Real, W>>& c) {
+  return a * b + c;
+}
+template <class Real, int W>
+PBF_HD Vec3<Lanes<Real, W>> mul_add(Real a, const Vec3<Lanes<Real, W>>& b, const Vec3<Real>& c) {
+  return a * b + Vec3<Lanes<Real, W>>{c.x, c.y, c.z};
 }
 /// The compiler turns the loop into one instruction.
 template <class Real, int W>
 PBF_HD Lanes<Real, W> square_root(const Lanes<Real, W>& a) {
-  typename Lanes<Real, W>::Vector r;
+  typename Lanes<Real, W>::Vector r{};
   for (int l = 0; l < W; ++l) r[l] = square_root(Real(a.v[l]));
   return r;
 }
@@ -66,6 +157,18 @@ struct Scattered {
   const int* index;
   PBF_HD int operator[](int lane) const { return index[lane]; }
 };
+
+/// In every block of four lanes: lane l from pattern(l), the lanes of b before those of c.
+template <class Real, int W, class Pattern>
+PBF_HD typename Lanes<Real, W>::Vector shuffled(const typename Lanes<Real, W>::Vector& b,
+                                                const typename Lanes<Real, W>::Vector& c, Pattern) {
+  return [&]<int... l>(std::integer_sequence<int, l...>) __attribute__((always_inline)) {
+    constexpr Pattern pattern{};
+    return typename Lanes<Real, W>::Vector(__builtin_shufflevector(
+        b, c, (pattern(l % 4) % 4 + l / 4 * 4 + (pattern(l % 4) >= 4 ? W : 0))...));
+  }
+  (std::make_integer_sequence<int, W>{});
+}
 
 /// Transposes the rows (x, y, z, w) of W particles into one vector per component: one load per
 /// particle and shuffles of whole registers, which is cheaper than four gathers.
@@ -100,11 +203,7 @@ PBF_HD Vec4<Lanes<Real, W>> transposed(const Vec4<Real>* a, Index i) {
     // Every block of 4 x 4 separately: pairs of rows into xy and zw, then pairs of those.
     const auto shuffle =
         [](const Vector& b, const Vector& c, auto pattern) __attribute__((always_inline)) {
-      return [&]<int... l>(std::integer_sequence<int, l...>) __attribute__((always_inline)) {
-        return Vector(__builtin_shufflevector(
-            b, c, (pattern(l % 4) % 4 + l / 4 * 4 + (pattern(l % 4) >= 4 ? W : 0))...));
-      }
-      (std::make_integer_sequence<int, W>{});
+      return shuffled<Real, W>(b, c, pattern);
     };
     constexpr auto low = [](int l) { return l / 2 + 4 * (l % 2); };       // 0 4 1 5
     constexpr auto high = [](int l) { return l / 2 + 2 + 4 * (l % 2); };  // 2 6 3 7
@@ -145,53 +244,4 @@ template <class Real, int W>
 PBF_HD Lanes<Real, W> adjacent(const Real* a, Adjacent<W> i) {
   return Lanes<Real, W>::at(a + i.first);
 }
-/// Whether a <= b in every lane; false if one of them is NaN.
-template <class Real, int W>
-PBF_HD bool all_at_most(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
-  const auto within = a.v <= b.v;
-  auto all = within[0];
-  for (int l = 1; l < W; ++l) all &= within[l];
-  return all != 0;
-}
-
-/// Finishes the particles one at a time, because this part is short and has branches. part:
-/// component c of lane l is at [c W + l].
-template <int W, class Pass, class Real>
-PBF_HD void finish_lanes(const Pass& pass, int i, int end, const Real* part) {
-  constexpr int parts = sizeof(typename Pass::Sum) / sizeof(Real);
-  for (int l = 0; l < W && i + l < end; ++l) {
-    Real mine[parts];
-    for (int c = 0; c < parts; ++c) mine[c] = part[c * W + l];
-    typename Pass::Sum one;
-    memcpy(&one, mine, sizeof one);
-    pass.finish(i + l, pass.own(i + l), one);
-  }
-}
-/// For groups in which particles may be near solids.
-template <int W, class Pass, class Real>
-PBF_HD_APART void finish_each(const Pass& pass, int i, int end, const Real* part) {
-  finish_lanes<W>(pass, i, end, part);
-}
-
-/// The neighbor sums of those of the particles i .. i + W - 1 that are below `end`; W divides i.
-/// The lists of such a group are padded to equal length with the far particle.
-template <class Real, int W, class Pass>
-PBF_HD void sum_over_neighbors_by_lanes(const Pass& pass, int i, int end) {
-  using V = Lanes<Real, W>;
-  const auto own = pass.own(Adjacent<W>{i});
-  typename Pass::template SumOf<V> sum{};
-  const int* entry = pass.lists.group(i);
-  for (int left = pass.lists.rounds(i); left > 0; --left, entry += W)
-    pass.add(sum, own, pass.other(Scattered<W>{entry}));
-  constexpr int parts = sizeof(sum) / sizeof(V);
-  Real part[parts * W];
-  memcpy(part, &sum, sizeof sum);
-  if constexpr (requires { pass.plain(); }) {  // boundary/near_split.h
-    if (!pass.all_far(Adjacent<W>{i}, own, sum)) return finish_each<W>(pass, i, end, part);
-    finish_lanes<W>(pass.plain(), i, end, part);
-  } else {
-    finish_lanes<W>(pass, i, end, part);
-  }
-}
-
 }  // namespace pbf::PBF_VARIANT

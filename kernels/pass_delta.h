@@ -43,6 +43,8 @@ struct DeltaPass {
   Order order{};                          ///< with moves_on: in/out
 
   static constexpr int D = dimensions_of(S);
+  template <class V>
+  static constexpr bool is_one = std::is_same_v<V, Real>;  ///< particle, not several
   using Own = Vec4<Real>;
   template <class V>
   struct SumOf {
@@ -66,8 +68,12 @@ struct DeltaPass {
   template <class V>
   PBF_HD V weight(const Vec4<V>& x, const Vec4<V>& y, V q2, V t) const {
     V w = x.w + y.w;
-    if constexpr (tensile)
-      w -= p.tensile_k * power(density_shape<Real, S>(q2, t) * p.tensile_scale, p.tensile_n);
+    if constexpr (tensile) {
+      V close = density_shape<Real, S>(q2, t) * p.tensile_scale;
+      // Its power is below the smallest normal number, for which processors take 100 cycles more.
+      if constexpr (!is_one<V>) close = choose(close < p.tensile_from, V(0), close);
+      w -= p.tensile_k * power(close, p.tensile_n);
+    }
     return w;
   }
   template <class V>
@@ -100,49 +106,61 @@ struct DeltaPass {
     const V w = wall * own.w, bound = twice * (pairs * pairs * dot(s.move, s.move) + w * w);
     return max2(s.closeness - V(coincident()), bound);
   }
-  PBF_HD Vec3<Real> new_velocity(int i, Vec3<Real> move, Vec3<Real> target,
-                                 Vec3<Real> inside) const {
-    return xyz(velocity[i]) + p.inv_dt * (move + (inside - target));
+  template <class Index, class V>
+  PBF_HD Vec3<V> new_velocity(Index i, Vec3<V> move, Vec3<V> target, Vec3<V> inside) const {
+    return xyz(row(velocity, i)) + p.inv_dt * (move + (inside - target));
   }
   /// x*
-  PBF_HD Vec3<Real> place(int i, const Own& own) const {
+  template <class Index, class V>
+  PBF_HD Vec3<V> place(Index i, const Vec4<V>& own) const {
     if constexpr (Order::second)
-      return xyz(own) + p.back * xyz(velocity[i]);
+      return xyz(own) + p.back * xyz(row(velocity, i));
     else
       return xyz(own);
   }
-  PBF_HD auto step(int i) const {
+  template <class V, class Index>
+  PBF_HD auto step(Index i) const {
     if constexpr (Order::second)
-      return StepWay<Real>{p.dt * xyz(velocity[i]), p.back * p.inv_dt};
+      return StepWay<V>{p.dt * xyz(row(velocity, i)), p.back * p.inv_dt};
     else
       return AnyWay{};
   }
   /// dx_i before walls and solids limit it.
-  PBF_HD Vec3<Real> free_move(int i, Vec3<Real> x, const Own& own, const Sum& s) const {
-    const Vec3<Real> pairs = in_space(s.move);
-    const Vec3<Real> move = s.closeness > coincident() ? pairs + separate(i, own) : pairs;
-    const Vec3<Real> wall = own.w * boundary.template push_gradient<S>(x, step(i));
-    const Vec3<Real> all = p.sor * (pair_factor() * move + wall);
+  template <class Index, class V>
+  PBF_HD Vec3<V> free_move(Index i, Vec3<V> x, const Vec4<V>& own, const SumOf<V>& s) const {
+    Vec3<V> move = in_space(s.move);
+    if constexpr (is_one<V>)
+      if (s.closeness > coincident()) move = move + separate(i, own);
+    const Vec3<V> wall = own.w * boundary.template push_gradient<S>(x, step<V>(i));
+    const Vec3<V> all = p.sor * (pair_factor() * move + wall);
     if constexpr (Coarse::on) return all + coarse(i);
     return all;
   }
-  PBF_HD void finish(int i, const Own& own, const Sum& s) const {
-    const Vec3<Real> x = place(i, own), move = free_move(i, x, own, s);
-    const Vec3<Real> target = x + move;
-    Stop<Real> end;
+  /// Coincident neighbors, and a move into the next substep, are computed one by one.
+  template <class V>
+  PBF_HD bool together(const SumOf<V>& s) const requires(!Coarse::on && !Boundary::books) {
+    return !moves_on && holds_everywhere(s.closeness <= coincident());
+  }
+  template <class Index, class V>
+  PBF_HD void finish(Index i, const Vec4<V>& own, const SumOf<V>& s) const {
+    const Vec3<V> x = place(i, own), move = free_move(i, x, own, s);
+    const Vec3<V> target = x + move;
+    Stop<V> end;
     if constexpr (Boundary::books) {
-      boundary.template book_push<S>(i, x, step(i), p.sor * own.w);
+      boundary.template book_push<S>(i, x, step<V>(i), p.sor * own.w);
       end = boundary.path_end_booked(i, x, target);
     } else {
       end.x = boundary.path_end(x, target);
     }
-    const Vec3<Real> inside = end.x, v = new_velocity(i, move, target, inside - end.still);
-    if (moves_on) {
-      move_on(i, inside, v, p, boundary, position_out, velocity, order, moves_on);
-      return;
+    const Vec3<V> inside = end.x, v = new_velocity(i, move, target, inside - end.still);
+    if constexpr (is_one<V>) {
+      if (moves_on) {
+        move_on(i, inside, v, p, boundary, position_out, velocity, order, moves_on);
+        return;
+      }
     }
-    position_out[i] = with_w(inside, Real(1) / density[i]);
-    velocity[i] = with_w(v, Real(0));
+    set_row(position_out, i, with_w(inside, Real(1) / row(density, i)));
+    set_row(velocity, i, with_w(v, V(0)));
   }
   PBF_HD Real pair_factor() const { return p.vol * Spiky<Real, D>::gradient_norm; }
   /// More than any sum of 1/q without coincident neighbors.

@@ -36,7 +36,12 @@ struct VectorLaplacian {
     const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
     s.v = s.v + shape * (point<D>(b.v) - a.v);
   }
-  PBF_HD Vec3<Real> laplacian(const Sum& s) const {
+  template <class V>
+  PBF_HD bool together(const VectorSum<V, D>&) const {
+    return true;
+  }
+  template <class V>
+  PBF_HD Vec3<V> laplacian(const VectorSum<V, D>& s) const {
     return (p.vol * density_norm<Real, S>()) * in_space(s.v);
   }
 };
@@ -47,9 +52,10 @@ template <class Real, class Lists, Smoothing S>
 struct VelocityLaplacianPass : VectorLaplacian<Real, Lists, S> {
   using Base = VectorLaplacian<Real, Lists, S>;
   OwnRows<Vec4<Real>> out;  ///< f L v
-  PBF_HD void finish(int i, const typename Base::Own&, const typename Base::Sum& s) const {
-    const Vec3<Real> l = this->laplacian(s);
-    out[i] = with_w((Real(1) / (Real(1) + dot(l, l) * this->p.calm)) * l, Real(0));
+  template <class Index, class V>
+  PBF_HD void finish(Index i, const MovingOwn<V, Base::D>&, const VectorSum<V, Base::D>& s) const {
+    const Vec3<V> l = this->laplacian(s);
+    set_row(out, i, with_w((Real(1) / (Real(1) + dot(l, l) * this->p.calm)) * l, V(0)));
   }
 };
 
@@ -59,9 +65,10 @@ struct HyperviscosityPass : VectorLaplacian<Real, Lists, S> {
   using Base = VectorLaplacian<Real, Lists, S>;
   OwnRows<Vec4<Real>> velocity;  ///< in/out, h/s
   DissipationBook book;
-  PBF_HD void finish(int i, const typename Base::Own&, const typename Base::Sum& s) const {
-    const Vec3<Real> v = xyz(velocity[i]), now = v - this->p.hyperviscosity * this->laplacian(s);
-    velocity[i] = with_w(now, Real(0));
+  template <class Index, class V>
+  PBF_HD void finish(Index i, const MovingOwn<V, Base::D>&, const VectorSum<V, Base::D>& s) const {
+    const Vec3<V> v = xyz(row(velocity, i)), now = v - this->p.hyperviscosity * this->laplacian(s);
+    set_row(velocity, i, with_w(now, V(0)));
     book.add(i, energy_taken(v, now));
   }
 };

@@ -42,29 +42,35 @@ struct DensityPass {
     const V q2 = dot(d, d);
     s.shape += density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
   }
-  PBF_HD void finish(int i, const Own& x, const Sum& s) const {
+  template <class V>
+  PBF_HD bool together(const SumOf<V>&) const requires(!Boundary::books) {
+    return true;
+  }
+  template <class Index, class V>
+  PBF_HD void finish(Index i, const Vec<V, D>& x, const SumOf<V>& s) const {
     // 1: the particle itself.
-    density[i] = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
-                 boundary.template term<S>(in_space(x)).density;
+    set_row(density, i,
+            p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
+                boundary.template term<S>(in_space(x)).density);
   }
 };
 
 /// C from the density: one-sided by default (only compression is corrected). NaN stays NaN, so that
 /// it is detected.
-template <class Real>
-PBF_HD Real constraint(Real density, const Params<Real>& p) {
-  const Real c = density - Real(1);
-  return !p.two_sided && c < Real(0) ? Real(0) : c;
+template <class V, class Real>
+PBF_HD V constraint(V density, const Params<Real>& p) {
+  const V c = density - Real(1);
+  return p.two_sided ? c : choose(c < Real(0), V(0), c);
 }
 
 /// Divisor of lambda if the scene leaves the step length to the program: 1 + 3 C above the rest
 /// density, at most 2. Jacobi iterations overshoot if there are many neighbors. The default of
 /// omega depends on their number at rest (lib/program/plan.h), this divisor on the excess. Without
 /// the limit of 2, or with rho^3, a pool collapsed under large steps.
-template <class Real>
-PBF_HD Real under_relaxation(Real density, const Params<Real>& p) {
-  if (!p.under_relax || !(density > Real(1))) return Real(1);
-  return min2(Real(3) * density - Real(2), Real(2));
+template <class V, class Real>
+PBF_HD V under_relaxation(V density, const Params<Real>& p) {
+  if (!p.under_relax) return V(1);
+  return choose(density > Real(1), min2(Real(3) * density - Real(2), V(2)), V(1));
 }
 
 /// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / under_relaxation(rho_i), in h^2. with_density:
@@ -115,29 +121,35 @@ struct LambdaPass {
     // A coincident pair (d = 0) adds no gradient, which is the mean over all directions.
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
-  PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    const BoundaryTerm<Real> wall = boundary.template term<S>(in_space(x));
-    Real rho;
+  template <class V>
+  PBF_HD bool together(const SumOf<V>&) const requires(!Boundary::books) {
+    return true;
+  }
+  template <class Index, class V>
+  PBF_HD void finish(Index i, const Vec<V, D>& x, const SumOf<V>& s) const {
+    const BoundaryTerm<V> wall = boundary.template term<S>(in_space(x));
+    V rho;
     if constexpr (with_density) {
       rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall.density;
-      density[i] = rho;
+      set_row(density, i, rho);
     } else {
-      rho = density[i];
+      rho = row(density, i);
     }
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
-    const Vec3<Real> own_gradient = a * in_space(s.gradient) + wall.gradient;
-    const Real c = constraint(rho, p);
-    Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
+    const Vec3<V> own_gradient = a * in_space(s.gradient) + wall.gradient;
+    const V c = constraint(rho, p);
+    V denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
     if constexpr (Boundary::books) denominator += boundary.template ease<S>(i, in_space(x));
     // The denominator is 0 without neighbors, walls and cfm.
-    const Real lambda =
-        denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);
-    Vec3<Real> place = in_space(x);
+    const V lambda =
+        choose(denominator > Real(0), -c / (under_relaxation(rho, p) * denominator), V(0));
+    Vec3<V> place = in_space(x);
     // x* - dt v is where the step began, since v takes part in every displacement.
     if constexpr (Order::second) place = place - p.back * xyz(load(velocity, i));
-    position_out[i] = with_w(place, lambda);
+    set_row(position_out, i, with_w(place, lambda));
     // At the end, where few registers are in use.
-    if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
+    for_rows_where(load(position, i).w < Real(0), i,
+                   [&](int k) { count_unresolved(k, p, lists, velocity, counts); });
   }
 };
 

@@ -12,39 +12,39 @@
 
 namespace pbf::PBF_VARIANT {
 
-template <class Real>
+/// V: Real, or several of them (kernels/lanes.h), as in predicted_bin().
+template <class V>
 struct Moving {
-  Vec3<Real> x, v;  ///< h, h/s
-  bool fast;        ///< above Params::speed_squared, before it was limited
-  Real mark = 1;    ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
+  Vec3<V> x, v;              ///< h, h/s
+  decltype(V() < V()) fast;  ///< above Params::speed_squared, before it was limited
+  V mark = 1;  ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
 };
 
 /// No push is taken over from the last step.
 struct NoPush {};
 /// The share of the last step's push that the prediction of particle i takes over, h/s; in a step
 /// without time the whole push, which stays as it is. v: velocity at the end of the last step.
-template <class Real, class Order>
-PBF_HD auto carried_push(const Order& order, int i, Vec3<Real> v, const Params<Real>& p) {
+template <class V, class Real, class Index, class Order>
+PBF_HD auto carried_push(const Order& order, Index i, Vec3<V> v, const Params<Real>& p) {
   if constexpr (Order::second) {
-    const Vec3<Real> push = v - xyz(order.free[i]);
+    const Vec3<V> push = v - xyz(row(OwnRows(order.free), i));
     return p.dt > Real(0) ? p.carry * push : push;
   } else {
     return NoPush{};
   }
 }
-template <class Real>
-PBF_HD Vec3<Real> pushed(Vec3<Real> v, NoPush, const Params<Real>&) {
+template <class V, class Real>
+PBF_HD Vec3<V> pushed(Vec3<V> v, NoPush, const Params<Real>&) {
   return v;
 }
-template <class Real>
-PBF_HD Vec3<Real> pushed(Vec3<Real> v, Vec3<Real> push, const Params<Real>& p) {
+template <class V, class Real>
+PBF_HD Vec3<V> pushed(Vec3<V> v, Vec3<V> push, const Params<Real>& p) {
   return p.dt > Real(0) ? v + push : v;
 }
 
 /// The velocity after gravity, or the tank's motion, and damping of a step.
-template <class Real, class Boundary>
-PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                              const Boundary& boundary) {
+template <class V, class Real, class Boundary>
+PBF_HD Vec3<V> accelerated(Vec3<V> x, Vec3<V> v, const Params<Real>& p, const Boundary& boundary) {
   if constexpr (requires { boundary.frame; }) {
     if (boundary.frame) return boundary.frame->accelerated(x, p.damping * v);
   }
@@ -54,26 +54,27 @@ PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
 /// v: already accelerated. The position is clamped to the walls, and the velocity follows the
 /// clamp, so that no particle is behind a wall after `predict`, with or without iterations.
 /// push: carried_push(). path_end(from, to): that of the boundary.
-template <class Real, class Push, class End>
-PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Push& push, const Params<Real>& p,
-                              End&& path_end) {
+template <class V, class Real, class Push, class End>
+PBF_HD Moving<V> predicted(Vec3<V> x, Vec3<V> v, const Push& push, const Params<Real>& p,
+                           End&& path_end) {
   v = pushed(v, push, p);
-  const Real speed_squared = dot(v, v);
-  const bool fast = speed_squared > p.speed_squared;
-  if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
-  const Vec3<Real> free = mul_add(p.dt, v, x);
+  const V speed_squared = dot(v, v);
+  const auto fast = speed_squared > p.speed_squared;
+  if (p.limit_speed && holds_somewhere(fast))
+    v = choose(fast, square_root(p.speed_squared / speed_squared) * v, v);
+  const Vec3<V> free = mul_add(p.dt, v, x);
   const auto [end, still] = path_end(x, free);
   // Only a clamped coordinate changes v: elsewhere end - free is exactly 0.
-  const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
+  const V mark = choose(speed_squared > p.passing_squared, V(-1), V(1));
   return {end, mul_add(p.inv_dt, end - free - still, v), fast, mark};
 }
 /// The same with plain walls only.
-template <class Real, class Push, class Boundary>
-PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Push& push, const Params<Real>& p,
-                            const Boundary& boundary) {
+template <class V, class Real, class Push, class Boundary>
+PBF_HD Moving<V> predict(Vec3<V> x, Vec3<V> v, const Push& push, const Params<Real>& p,
+                         const Boundary& boundary) {
   const Box<Real>& walls = boundary;
   return predicted(x, accelerated(x, v, p, boundary), push, p,
-                   [&](auto from, auto to) { return Stop<Real>{walls.path_end(from, to)}; });
+                   [&](auto from, auto to) { return Stop<V>{walls.path_end(from, to)}; });
 }
 /// The same for particle i with solids; books loads of walls and solids.
 template <class Real, class Push, class Boundary>
@@ -126,9 +127,9 @@ PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
 }
 
 /// The bin of x* of row i, or -1 if NearPredictPass computes it.
-template <int D, class Real, class Order, class Boundary>
-PBF_HD int predicted_bin(int i, Vec3<Real> x, Vec3<Real> v, const Order& order,
-                         const Params<Real>& p, const Boundary& boundary) {
+template <int D, class V, class Real, class Index, class Order, class Boundary>
+PBF_HD auto predicted_bin(Index i, Vec3<V> x, Vec3<V> v, const Order& order, const Params<Real>& p,
+                          const Boundary& boundary) {
   const auto push = carried_push(order, i, v, p);
   if constexpr (Boundary::far_only) {
     const Vec3<Real> faster = pushed(accelerated(x, v, p, boundary), push, p);

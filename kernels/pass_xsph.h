@@ -54,12 +54,16 @@ struct XsphPass {
     const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
     s.v = s.v + (shape * (a.w + b.x.w)) * (point<D>(b.v) - a.v);
   }
-  PBF_HD void finish(int i, const Own& a, const Sum& s) const {
-    const Vec3<Real> v =
-        in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
-    velocity_out[i] = with_w(v, Real(0));
+  template <class V>
+  PBF_HD bool together(const VectorSum<V, D>&) const requires(!Boundary::far_only) {
+    return true;
+  }
+  template <class Index, class V>
+  PBF_HD void finish(Index i, const XsphOwn<V, D>& a, const VectorSum<V, D>& s) const {
+    const Vec3<V> v = in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
+    set_row(velocity_out, i, with_w(v, V(0)));
     book.add(i, energy_taken(in_space(a.v), v));
-    if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, order, p, boundary);
+    if (bin) set_row(OwnRows(bin), i, predicted_bin<D>(i, in_space(a.x), v, order, p, boundary));
   }
 };
 

@@ -15,8 +15,8 @@ constexpr double kResolvedWay = 0.4;
 /// records the largest such distance. In such a pair, at least one particle moves by more than half
 /// of it. `predict` marks these particles, and only they are checked. velocity: as predicted, h/s.
 template <class Real, class Lists>
-PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
-                             GatheredRows<Vec4<Real>> velocity, StepCounts* counts) {
+PBF_HD_RARE void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
+                                  GatheredRows<Vec4<Real>> velocity, StepCounts* counts) {
   constexpr Real limit = Real(kResolvedWay * kResolvedWay);
   const Vec3<Real> way = p.dt * xyz(velocity[i]);
   Real longest(0);

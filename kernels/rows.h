@@ -25,6 +25,17 @@ class OwnRows {
   T* rows_ = nullptr;
 };
 
+/// Row i of an array that a pass may also write, and its change. kernels/lanes.h has both for
+/// several rows.
+template <class T>
+PBF_HD T row(OwnRows<T> a, int i) {
+  return a[i];
+}
+template <class T>
+PBF_HD void set_row(OwnRows<T> a, int i, const T& value) {
+  a[i] = value;
+}
+
 /// A read-only array of which a pass also reads rows of neighbors.
 template <class T>
 class GatheredRows : public OwnRows<const T> {

@@ -34,10 +34,10 @@ struct StepWay {
 /// 0.4 h on it is x*, because a particle that comes so fast is elsewhere in the wall's density.
 template <class Real>
 PBF_HD Vec3<Real> push_place(Vec3<Real> x, const StepWay<Real>& step) {
-  constexpr Real most(0.4);
+  const Real most(0.4);
   const Vec3<Real> w = step.back * step.way;
   const Real left = Real(1) - dot(w, w) * (Real(1) / (most * most));
-  return left > Real(0) ? x - left * w : x;
+  return choose(left > Real(0), x - left * w, x);
 }
 template <class Real>
 PBF_HD Vec3<Real> push_place(Vec3<Real> x, AnyWay) {

@@ -76,6 +76,25 @@ PBF_HD Vec3<R> in_space(R y) {
   return {R(0), y, R(0)};
 }
 
+// Conditions of formulas that are also for several particles at once, for which kernels/lanes.h has
+// the same functions. For one particle, a condition is a bool.
+/// a where `c` holds, b elsewhere.
+template <class Real>
+requires std::is_floating_point_v<Real> PBF_HD Real choose(bool c, Real a, Real b) {
+  return c ? a : b;
+}
+template <class Condition, class R>
+PBF_HD Vec3<R> choose(const Condition& c, Vec3<R> a, Vec3<R> b) {
+  return {choose(c, a.x, b.x), choose(c, a.y, b.y), choose(c, a.z, b.z)};
+}
+PBF_HD bool holds_everywhere(bool c) { return c; }
+PBF_HD bool holds_somewhere(bool c) { return c; }
+/// f(row) for each row where the condition holds.
+template <class F>
+PBF_HD void for_rows_where(bool c, int row, F&& f) {
+  if (c) f(row);
+}
+
 PBF_HD float square_root(float x) { return sqrtf(x); }
 PBF_HD double square_root(double x) { return sqrt(x); }
 

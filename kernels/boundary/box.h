@@ -8,7 +8,8 @@ namespace pbf::PBF_VARIANT {
 
 enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
 
-/// What a boundary adds at a point: density in units of rho0 and gradient in rho0/h.
+/// What a boundary adds at a point: density in units of rho0 and gradient in rho0/h. Here and in
+/// Box, V: Real, or several of them (kernels/lanes.h).
 template <class Real>
 struct BoundaryTerm {
   Real density = 0;
@@ -38,17 +39,18 @@ struct Box {
   /// lib/program/calibrate.h. Walls are combined by inclusion and exclusion, 1 - prod(1 - A D_k):
   /// exact for one wall, an approximation where two half spaces overlap (its error: tests/oracle).
   /// With `paper`, the density uses D of Poly6 and the gradient D of Spiky, as for particles.
-  template <Smoothing S>
-  PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
+  template <Smoothing S, class V>
+  PBF_HD BoundaryTerm<V> term(Vec3<V> x) const;
 
   /// The gradient of term() where the particle at x is pushed from.
-  template <Smoothing S>
-  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const StepWay<Real>& step) const {
-    if (far_from_walls<dimensions_of(S)>(x, Real(1 + kPushPlaceAway))) return {};
-    return term<S>(push_place(x, step)).gradient;
+  template <Smoothing S, class V>
+  PBF_HD Vec3<V> push_gradient(Vec3<V> x, const StepWay<V>& step) const {
+    const auto far = far_from_walls<dimensions_of(S)>(x, Real(1 + kPushPlaceAway));
+    if (holds_everywhere(far)) return {};
+    return choose(far, Vec3<V>{}, term<S>(push_place(x, step)).gradient);
   }
-  template <Smoothing S>
-  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, AnyWay) const {
+  template <Smoothing S, class V>
+  PBF_HD Vec3<V> push_gradient(Vec3<V> x, AnyWay) const {
     return term<S>(x).gradient;
   }
 
@@ -63,7 +65,8 @@ struct Box {
   PBF_HD bool slopes(Vec3<Real> x, Real (&of_wall)[6]) const;
 
   /// The end of a path from a point inside to `to`: the point inside that is nearest to `to`.
-  PBF_HD Vec3<Real> path_end(Vec3<Real>, Vec3<Real> to) const {
+  template <class V>
+  PBF_HD Vec3<V> path_end(Vec3<V>, Vec3<V> to) const {
     return {clamped(to.x, extent.x, x_min), clamped(to.y, extent.y, y_min),
             clamped(to.z, extent.z, z_min)};
   }
@@ -93,15 +96,16 @@ struct Box {
 
  private:
   /// Whether all faces are at least `range` away. 2-D: no wall along y.
-  template <int D>
-  PBF_HD bool far_from_walls(Vec3<Real> x, Real range) const {
+  template <int D, class V>
+  PBF_HD auto far_from_walls(Vec3<V> x, Real range) const {
     return x.x >= range && (D == 2 || x.y >= range) && x.z >= range && x.x <= extent.x - range &&
            (D == 2 || x.y <= extent.y - range) && x.z <= extent.z - range;
   }
-  PBF_HD Real clamped(Real x, Real high, unsigned low_wall) const {
+  template <class V>
+  PBF_HD V clamped(V x, Real high, unsigned low_wall) const {
     const Real low = margin;
-    if (walls & low_wall && x < low) x = low;
-    if (walls & (2 * low_wall) && x > high - margin) x = high - margin;
+    if (walls & low_wall) x = choose(x < low, V(low), x);
+    if (walls & (2 * low_wall)) x = choose(x > high - margin, V(high - margin), x);
     return x;
   }
 };
@@ -131,33 +135,36 @@ PBF_HD bool Box<Real>::slopes(Vec3<Real> x, Real (&of_wall)[6]) const {
 }
 
 template <class Real>
-template <Smoothing S>
-PBF_HD BoundaryTerm<Real> Box<Real>::term(Vec3<Real> x) const {
-  BoundaryTerm<Real> w;
+template <Smoothing S, class V>
+PBF_HD BoundaryTerm<V> Box<Real>::term(Vec3<V> x) const {
+  BoundaryTerm<V> w;
   if (!adds_density) return w;
-  const Real one(1);
+  const V one(1);
   constexpr bool flat = dimensions_of(S) == 2;
-  if (far_from_walls<dimensions_of(S)>(x, one)) return w;
-  const Real distance[6] = {x.x, extent.x - x.x, x.y, extent.y - x.y, x.z, extent.z - x.z};
-  Real keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
+  const auto far = far_from_walls<dimensions_of(S)>(x, Real(1));
+  if (holds_everywhere(far)) return w;
+  const V distance[6] = {x.x, extent.x - x.x, x.y, extent.y - x.y, x.z, extent.z - x.z};
+  V keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
   for (int axis = 0; axis < 3; axis += flat ? 2 : 1)
     for (int side = 0; side < 2; ++side) {
       const int face = 2 * axis + side;
-      const Real q = distance[face] * inv_range;
-      if (!(walls & (1u << face)) || !(q < one)) continue;
-      const HalfSpace<Real> g = gradient_half_space<Real, S>(q);
-      const Real d = is_paper(S) ? density_half_space<Real, S>(q).density : g.density;
-      keep_density = keep_density * (one - scale * d);
+      const V q = distance[face] * inv_range;
+      const auto near = q < one;
+      if (!(walls & (1u << face)) || !holds_somewhere(near)) continue;
+      const HalfSpace<V> g = gradient_half_space<V, S>(q);
+      const V d = is_paper(S) ? density_half_space<V, S>(q).density : g.density;
+      keep_density = choose(near, keep_density * (one - scale * d), keep_density);
       // d/dx of 1 - A D(q/kappa), and the product rule where opposite walls are near each other.
-      const Real f = one - scale * g.density;
-      const Real s = scale * inv_range * (side == 0 ? g.slope : -g.slope);
-      slope[axis] = slope[axis] * f - s * keep[axis];
-      keep[axis] = keep[axis] * f;
+      const V f = one - scale * g.density;
+      const V s = scale * inv_range * (side == 0 ? g.slope : -g.slope);
+      slope[axis] = choose(near, slope[axis] * f - s * keep[axis], slope[axis]);
+      keep[axis] = choose(near, keep[axis] * f, keep[axis]);
     }
   // The gradient of 1 - prod(keep): minus the product rule's sum.
-  w.density = one - keep_density;
-  w.gradient = {-slope[0] * keep[1] * keep[2], -slope[1] * keep[0] * keep[2],
-                -slope[2] * keep[0] * keep[1]};
+  const Vec3<V> gradient{-slope[0] * keep[1] * keep[2], -slope[1] * keep[0] * keep[2],
+                         -slope[2] * keep[0] * keep[1]};
+  w.density = choose(far, V(0), one - keep_density);
+  w.gradient = choose(far, Vec3<V>{}, gradient);
   return w;
 }
 

@@ -52,9 +52,9 @@ struct FarHalf : Pass {
   PBF_HD bool all_far(Rows rows, const OwnRows& own, const SumRows& sum) const {
     auto left = adjacent(this->boundary.near.way_left_squared, rows);
     if constexpr (requires { this->far_bound(own, sum); })
-      return all_at_most(this->far_bound(own, sum), left);
+      return holds_everywhere(this->far_bound(own, sum) <= left);
     else
-      return !moves && all_at_most(decltype(left)(0), left);
+      return !moves && holds_everywhere(decltype(left)(0) <= left);
   }
   PBF_HD const Pass& plain() const { return *this; }
 

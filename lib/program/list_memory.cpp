@@ -84,11 +84,12 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
       std::int64_t(double(at_start(plan)) * std::max(double(entries), start.mean) +
                    double(n - at_start(plan)) * emitted));
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
+  add("columns of coordinates", word(s.precision), s.dimensions, n);
   add("table of lists", "int64", 3, chunks);
+  // The lists of a group, among the candidates of its last particle; a reserve of a quarter.
   add("neighbors found by each thread", "int32", 1,
       std::min<std::int64_t>(threads, chunks) *
-          std::max(cpu_scratch_entries(entries),  // grows with a reserve of a quarter
-                   std::int64_t(1.25 * double(std::min<std::int64_t>(n, 1024)) * start.most)));
+          std::int64_t(1.25 * 24 * (std::max(double(entries), start.most) + 16)));
 }
 
 void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, bool rank,

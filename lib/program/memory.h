@@ -70,11 +70,6 @@ DenseStart dense_start(const Scene& scene, const Plan& plan);
 /// The end of a message about insufficient memory: what to change in the scene.
 std::string memory_remedy(const Scene& scene, const Plan& plan);
 
-/// Entries of the scratch memory of one thread: lists of 1024 particles and of one group.
-constexpr std::int64_t cpu_scratch_entries(int list_entries) {
-  return (1024 + 32) * std::int64_t(list_entries);
-}
-
 /// For the scene's backend and precision (for others, change them in a copy). Pure, except that the
 /// number of CPU threads depends on this machine if the scene does not set it, and the padding of
 /// lists on the length of its vectors.

@@ -85,17 +85,12 @@ void CpuExec::rank(int n, const int* id, int* place) {
 void CpuExec::describe(SolverInfo& info) const {
   info.backend = "cpu";
   info.device = cpu_model();
-  info.driver = simd_name(simd_);
+  info.driver = simd_name(simd());
   info.threads = threads_;
 }
 
 std::size_t CpuExec::bytes() const {
-  std::size_t sum = groups_.bytes() + chunks_.capacity() * sizeof chunks_[0] +
-                    pointers_.capacity() * sizeof pointers_[0] +
-                    in_bins_.capacity() * sizeof in_bins_[0];
-  for (const auto& c : chunks_) sum += c.bytes();
-  for (const auto& s : scratch_) sum += s.bytes();
-  return sum;
+  return list_bytes() + in_bins_.capacity() * sizeof in_bins_[0];
 }
 
 }  // namespace pbf::PBF_VARIANT

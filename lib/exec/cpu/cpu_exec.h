@@ -6,7 +6,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <vector>
 
@@ -15,19 +14,18 @@
 #include "kernels/pass_residual.h"
 #include "kernels/pass_sort.h"
 #include "lib/base/stage_clock.h"
+#include "lib/exec/cpu/cpu_lists.h"
 #include "lib/exec/cpu/cpu_rows.h"
-#include "lib/exec/cpu/cpu_threads.h"
-#include "lib/exec/cpu/host_buffer.h"
 #include "lib/exec/cpu/lane_sums.h"
-#include "lib/exec/cpu/list_maker.h"
 #include "lib/program/list_capacity.h"
 #include "lib/program/memory.h"
 #include "lib/solver/executor.h"
 
 namespace pbf::PBF_VARIANT {
 
-class CpuExec : public CpuRows, protected CpuThreads {
+class CpuExec : public CpuRows, protected CpuLists {
  public:
+  using CpuLists::build_lists;
   using CpuThreads::count_in_bins, CpuThreads::sum_of;
   using Lists = ChunkedLists;
   static constexpr Backend backend = Backend::cpu;
@@ -38,10 +36,7 @@ class CpuExec : public CpuRows, protected CpuThreads {
   /// threads >= 1. list_entries: capacity per particle for its neighbors, at first
   /// (lib/program/memory.h); pages that stay empty are never touched.
   explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
-      : CpuThreads(threads),
-        list_entries_(list_entries),
-        simd_(simd),
-        scratch_(std::size_t(threads)) {}
+      : CpuLists(threads, list_entries, simd) {}
 
   void begin() { clock_.begin(); }
   void mark(const char* stage) { clock_.mark(stage); }
@@ -112,7 +107,7 @@ class CpuExec : public CpuRows, protected CpuThreads {
   template <PairPass Pass>
   void pairs(const RowRange& rows, const Pass& pass) {
     using Real = std::remove_cvref_t<decltype(pass.p.dt)>;
-    const int width = 1 << lane_bits(simd_, sizeof(Real));
+    const int width = 1 << lane_bits(simd(), sizeof(Real));
     in_pieces<1>(
         rows.last,
         [&](int begin, int end) {
@@ -121,7 +116,7 @@ class CpuExec : public CpuRows, protected CpuThreads {
             // one by one. The bits are the same.
             const int whole = std::min((first + width - 1) / width * width, last);
             for (int i = first; i < whole; ++i) sum_over_neighbors(pass, i);
-            sum_over_neighbors(simd_, pass, whole, last);
+            sum_over_neighbors(simd(), pass, whole, last);
           });
         },
         rows.first);
@@ -223,44 +218,6 @@ class CpuExec : public CpuRows, protected CpuThreads {
   /// order[k] = row of the k-th particle by (bin, id). Leaves out rows of other bins.
   void sort(const int* bin, const int* id, int n, const BinRange& bins, int* order, int* start);
 
-  /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
-  /// std::bad_alloc). far: the row that pads lists.
-  template <class Real>
-  Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
-                    const Params<Real>& p) {
-    return build_lists(RowRange{0, n}, far, position, bin_start, p);
-  }
-  template <class Real>
-  Lists build_lists(const RowRange& rows, int far, const Vec4<Real>* position, const int* bin_start,
-                    const Params<Real>& p) {
-    const int n = rows.last;
-    const int chunks = (n + kChunk - 1) / kChunk;
-    const int bits = lane_bits(simd_, sizeof(Real)), groups_per_chunk = kChunk >> bits;
-    chunks_.resize(std::size_t(chunks));
-    pointers_.resize(std::size_t(chunks));
-    groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
-    for (int c = rows.first / kChunk; c < chunks; ++c) {
-      ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
-      scratch.reserve(list_entries_);
-      const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
-      ChunkedLists::Group* groups = groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk);
-      const std::size_t used = p.dimensions == 2
-                                   ? make_lists<2>(simd_, position, bin_start, p, rows.id, first,
-                                                   last, far, groups, scratch)
-                                   : make_lists<3>(simd_, position, bin_start, p, rows.id, first,
-                                                   last, far, groups, scratch);
-      HostBuffer<int>& mine = chunks_[std::size_t(c)];
-      // Grow with a reserve, shrink only if far too large: sizes change little between updates.
-      const std::size_t capacity = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);
-      if (mine.size() < used || mine.size() > 2 * std::max(used, capacity))
-        mine.resize(used > capacity ? used + used / 16 : capacity);
-      std::copy_n(scratch.found.data(), used, mine.data());  // if used is 0, both may be null
-      pointers_[std::size_t(c)] = mine.data();
-    }
-    return {pointers_.data(), groups_.data(), bits, far};
-  }
-
   template <class Updates>
   void repeat_unrecorded(int updates, Updates& u) {
     u.step(updates);
@@ -271,17 +228,8 @@ class CpuExec : public CpuRows, protected CpuThreads {
 
   std::size_t bytes() const;
 
- protected:
-  Simd simd() const { return simd_; }
-
  private:
-  int list_entries_;
-  Simd simd_;
   StageClock clock_;
-  std::vector<ListScratch> scratch_;  ///< per thread
-  std::vector<HostBuffer<int>> chunks_;
-  std::vector<const int*> pointers_;
-  HostBuffer<ChunkedLists::Group> groups_;
 };
 
 }  // namespace pbf::PBF_VARIANT

@@ -1,6 +1,7 @@
 // A 64-byte aligned array on the host. Not initialized: the first pass that writes it touches it.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 #include <type_traits>
@@ -32,6 +33,13 @@ class HostBuffer {
     data_ = static_cast<T*>(std::aligned_alloc(64, bytes));
     if (!data_) throw std::bad_alloc();
     size_ = n;
+  }
+  /// The same with the first `kept` elements.
+  void resize(std::size_t n, std::size_t kept) {
+    HostBuffer other;
+    other.resize(n);
+    std::copy_n(data_, kept, other.data_);
+    swap(other);
   }
   T* data() { return data_; }
   const T* data() const { return data_; }

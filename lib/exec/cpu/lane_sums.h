@@ -1,7 +1,7 @@
 // Runs a pass over neighbors for a range of particles, for each set of vector instructions.
 #pragma once
 
-#include "kernels/lanes.h"
+#include "kernels/lane_groups.h"
 #include "lib/program/simd.h"
 
 namespace pbf::PBF_VARIANT {
