@@ -32,8 +32,8 @@ seeded_defect(stale_grid neighbors lib/solver/step_context.h
   [[exec.build_lists(of, capacity(), position(),]]
   [[exec.build_lists(of, capacity(), data(other<field::position>),]])
 seeded_defect(last_neighbor_skipped neighbors lib/exec/cpu/list_maker.h
-  [[close_to(simd, c, x, i + l, out) - out);]]
-  [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
+  [[close_to<D>(simd, columns, blocks, x, i + l, out) - out);]]
+  [[std::max<std::ptrdiff_t>(close_to<D>(simd, columns, blocks, x, i + l, out) - out, 1) - 1);]])
 seeded_defect(short_cutoff neighbors lib/exec/cpu/close_pairs.h
   [[kCutoffSquared = 1;]] [[kCutoffSquared = 0.98f;]])
 
@@ -49,13 +49,17 @@ seeded_defect(wall_density_missing density kernels/pass_lambda.h
   [[(Real(1) + s.shape) + wall.density;]] [[(Real(1) + s.shape);]])
 seeded_defect(float_for_double density kernels/pass_lambda.h
   [[(Real(1) + s.shape) + wall.density;
-      density[i] = rho;]]
-  [[Real(float(Real(1) + s.shape)) + wall.density;
-      density[i] = rho;]])
+      set_row(density, i, rho);]]
+  [[[](auto x) {
+              const auto high = Real(sizeof(Real) == 8 ? 0x20000001 : 0) * x;
+              return high - (high - x);  // 24 bits
+            }(Real(1) + s.shape) +
+            wall.density;
+      set_row(density, i, rho);]])
 
 # lambda
 seeded_defect(lambda_sign lambda kernels/pass_lambda.h
-  [[? -c / (]] [[? c / (]])
+  [[, -c / (]] [[, c / (]])
 seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
   [[dot(own_gradient, own_gradient) + p.cfm;]] [[dot(own_gradient, own_gradient);]])
 seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
@@ -63,23 +67,30 @@ seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
 seeded_defect(wall_gradient_side lambda kernels/boundary/box.h
   [[(side == 0 ? g.slope : -g.slope)]] [[g.slope]])
 seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
-  [[return !p.two_sided && c < Real(0) ? Real(0) : c;]] [[return c;]])
+  [[return p.two_sided ? c : choose(c < Real(0), V(0), c);]] [[return c;]])
 
 # delta
 seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w += p.tensile_k]])
 seeded_defect(frozen_particle delta kernels/pass_delta.h
-  [[with_w(inside, Real(1) / density[i])]] [[with_w(i == 7 ? x : inside, Real(1) / density[i])]])
+  [[set_row(position_out, i, with_w(inside, Real(1) / row(density, i)));]]
+  [[set_row(position_out, i, with_w(inside, Real(1) / row(density, i)));
+    if constexpr (is_one<V>) {
+      if (i == 7) position_out[7] = with_w(x, position_out[7].w);
+    } else if (const int l = 7 - i[0]; l >= 0 && l < V::width) {
+      position_out[7] = {x.x.v[l], x.y.v[l], x.z.v[l], position_out[7].w};
+    }]])
 seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
   [[      end.x = boundary.path_end(x, target);]] [[      end.x = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
-  [[xyz(velocity[i]) + p.inv_dt * (move + (inside - target))]] [[xyz(velocity[i])]])
+  [[xyz(row(velocity, i)) + p.inv_dt * (move + (inside - target))]]
+  [[xyz(row(velocity, i))]])
 seeded_defect(neighbors_lambda_missing delta kernels/pass_delta.h
   [[V w = x.w + y.w;]] [[V w = x.w + x.w;]])
 seeded_defect(s_corr_exponent delta kernels/pass_delta.h
   [[x = x * x;
     return x * x;]] [[return x * x;]])
 seeded_defect(inverse_density_missing delta kernels/pass_delta.h
-  [[with_w(inside, Real(1) / density[i])]] [[with_w(inside, Real(1))]])
+  [[with_w(inside, Real(1) / row(density, i))]] [[with_w(inside, V(1))]])
 seeded_defect(one_iteration_less iterations lib/solver/stepper.h
   [[for (int k = 0; k < s.times; ++k) {]] [[for (int k = 0; k + 1 < s.times; ++k) {]])
 
@@ -205,14 +216,14 @@ seeded_defect(second_push_taken_whole predict kernels/pass_predict.h
 seeded_defect(second_half_step_at_resume predict kernels/pass_change_step.h
   [[const Real old = Real(last->dt), half(0.5);]] [[const Real old(0), half(0.5);]] second)
 seeded_defect(second_walls_at_y delta kernels/time_order.h
-  [[left > Real(0) ? x - left * w : x;]] [[x - w;]] second)
+  [[choose(left > Real(0), x - left * w, x);]] [[x - w;]] second)
 seeded_defect(second_walls_at_x delta kernels/time_order.h
-  [[left > Real(0) ? x - left * w : x;]] [[x;]] second)
+  [[choose(left > Real(0), x - left * w, x);]] [[x;]] second)
 seeded_defect(second_load_not_carried loads kernels/boundary/loads.h
   [[to.way[k] += whole(carry * way);]] [[]] second_solids)
 
 # Other arithmetic, as another backend may have it.
-seeded_defect(clean_reverse_sums none kernels/lanes.h
+seeded_defect(clean_reverse_sums none kernels/lane_groups.h
   [[pass.lists.group(i);
   for (int left = pass.lists.rounds(i); left > 0; --left, entry += W)]]
   [[pass.lists.group(i) + pass.lists.rounds(i) * W;
