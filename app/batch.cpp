@@ -1,16 +1,15 @@
-// pbf batch: many scenes, each in its own process and folder. Finished runs are skipped, stopped or
+// pbf batch: many scenes, each in a folder of its own. Finished runs are skipped, stopped or
 // killed ones continue.
 #include <fmt/core.h>
 #include <algorithm>
 #include <filesystem>
 #include <map>
 
-#include "app/batch_slurm.h"
+#include "app/batch_options.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
-#include "lib/base/machine.h"
 #include "lib/base/output_file.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
@@ -27,21 +26,6 @@
 
 namespace pbf::app_module {
 namespace {
-
-struct BatchOptions : SceneOptions {
-  std::string input;              ///< folder, scene or list
-  std::string out;                ///< folder of the runs; empty: out/batch_<name>
-  std::vector<std::string> grid;  ///< key=v1,v2
-  int jobs = 0;                   ///< at a time; 0: as the help says
-  int threads = 0;                ///< CPU threads per run, 0: all / jobs
-  std::string share = "auto";     ///< which runs share a process
-  int ranks = 1;                  ///< per run of the Slurm script
-  std::int64_t only = -1;         ///< index of the only run, from 0; -1: all
-  double max_walltime = 0;        ///< s, 0: none
-  std::string time = "1:00:00";   ///< per task of the Slurm script
-  bool list = false, slurm = false, collect = false, quiet = false;
-  bool strict = false;  ///< for every run
-};
 
 const char* const kBatchHelp =
     "Every run is what `pbf run --resume` does, in a folder of its own: what is finished (DONE\n"
@@ -61,61 +45,11 @@ const char* const kBatchHelp =
 
 namespace fs = std::filesystem;
 
-/// The options that a batch hands on to each run.
-std::vector<std::string> options_of_runs(const BatchOptions& o) {
-  std::vector<std::string> words;
-  for (const std::string& s : o.overrides) words.insert(words.end(), {"--set", s});
-  if (!o.base_folder.empty())
-    words.insert(words.end(), {"--base-folder", fs::absolute(o.base_folder).string()});
-  if (o.strict) words.push_back("--strict");
-  return words;
-}
-
-/// The command on one line, with absolute paths, for a script that runs elsewhere.
-std::string command_text(const BatchOptions& o, const std::string& out) {
-  std::string text = shell_quoted(fs::read_symlink("/proc/self/exe").string()) + " batch " +
-                     shell_quoted(fs::absolute(o.input).string()) + " --out " +
-                     shell_quoted(fs::absolute(out).string());
-  for (const std::string& g : o.grid) text += " --grid " + shell_quoted(g);
-  for (const std::string& word : options_of_runs(o)) text += " " + shell_quoted(word);
-  return text;
-}
-
-std::string script(const BatchOptions& o, const std::string& out,
-                   const std::vector<BatchMember>& members) {
-  SlurmWishes wishes;
-  wishes.command = command_text(o, out);
-  wishes.runs = members.size();
-  if (o.threads > 0) wishes.threads = o.threads;
-  wishes.ranks = o.ranks;
-  wishes.time = o.time;
-  slurm_seconds(o.time);  // reports errors before the runs are checked
-  std::vector<std::string> overrides = o.overrides;
-  overrides.push_back("threads=" + std::to_string(wishes.threads));
-  for (const JobNeeds& n : check_members(members, overrides, o.base_folder, false, o.ranks)) {
-    wishes.needs.host_bytes = std::max(wishes.needs.host_bytes, n.host_bytes);
-    wishes.needs.device |= n.device;
-  }
-  return slurm_script(wishes);
-}
-
 std::string list_text(const std::vector<BatchMember>& members) {
   std::string text = fmt::format("{} runs", members.size());
   for (std::size_t k = 0; k < members.size(); ++k)
     text += fmt::format("\n  {:3}  {}  ({})", k, members[k].name, members[k].scene);
   return text;
-}
-
-JobLimits limits(const BatchOptions& o) {
-  JobLimits limits;
-  if (o.jobs > 0) limits.alone = limits.shared = o.jobs;
-  return limits;
-}
-
-/// CPU threads of each run; 0: as its scene says.
-int threads_of_run(const BatchOptions& o, bool shares = false) {
-  const int jobs = shares ? limits(o).shared : limits(o).alone;
-  return o.threads == 0 && jobs > 1 ? std::max(1, usable_threads() / jobs) : o.threads;
 }
 
 class Batch {
@@ -127,9 +61,10 @@ class Batch {
 
   void run() {
     const auto stop = [this] { return signal_token().why() || time_is_up(); };
-    run_jobs(
-        limits(o_), needs_, [this](std::size_t k) { return arguments(k); }, stop,
-        [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
+    run_jobs(limits(o_), needs_,
+             {[this](std::size_t k) { return arguments(k); }, stop,
+              [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); },
+              [this](const std::string& text) { log_.note("pbf: " + text); }});
   }
 
   /// Collects the results of runs without running them, from DONE, record and run.vtkhdf.
@@ -205,7 +140,8 @@ class Batch {
                                   "--quiet", "--resume"};
     for (const std::string& word : options_of_runs(o_)) args.push_back(word);
     for (const std::string& s : m.overrides) args.insert(args.end(), {"--set", s});
-    if (const int n = threads_of_run(o_, needs_[k].shares))
+    const auto sharing = needs_[k].shares ? std::ranges::count_if(needs_, &JobNeeds::shares) : 0;
+    if (const int n = threads_of_run(o_, sharing))
       args.insert(args.end(), {"--threads", std::to_string(n)});
     if (o_.max_walltime > 0)
       args.insert(args.end(),
@@ -245,7 +181,7 @@ int command_batch(const BatchOptions& o) {
     return 0;
   }
   if (o.slurm) {
-    log.result(script(o, out, members));
+    log.result(slurm_text(o, out, members));
     return 0;
   }
   if (o.only >= std::int64_t(members.size()))
@@ -257,7 +193,8 @@ int command_batch(const BatchOptions& o) {
     std::vector<std::string> overrides = o.overrides;
     if (const int n = threads_of_run(o)) overrides.push_back("threads=" + std::to_string(n));
     needs = check_members(members, overrides, o.base_folder, true);
-    for (JobNeeds& n : needs) n.shares = o.share == "yes" || (o.share == "auto" && n.device);
+    for (JobNeeds& n : needs)
+      n.shares = !n.pictures && (o.share == "yes" || (o.share == "auto" && n.device));
   }
   make_folder(out);
   for (const char* name : {"/summary.csv", "/summary.json"}) {
@@ -291,12 +228,12 @@ void add_batch(CLI::App& app, int& code) {
       "combination");
   add_scene_options(c, o);
   c->add_option("--jobs", o.jobs,
-                "Runs at a time; 1, of those that share a process up to 8: as many as fit into "
-                "memory and have together about 300000 particles")
+                "Runs at a time; 1, of those that share a process up to 8 on each GPU: as many as "
+                "fit into memory and have together about 300000 particles")
       ->transform(whole_number(1, 4096));
   c->add_option("--share", o.share,
-                "Whether runs share a process, which makes the GPU ready once: auto: those on a "
-                "GPU; yes; no")
+                "Whether runs without pictures share a process, which makes the GPU ready once: "
+                "auto: those on a GPU; yes; no")
       ->check(CLI::IsMember({"auto", "yes", "no"}));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
       ->transform(whole_number(1, 4096));

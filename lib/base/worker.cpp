@@ -20,6 +20,8 @@ void Worker::work() {
     } else if (!changed_.wait_for(lock, std::chrono::duration<double>(when_idle_.seconds), comes)) {
       idle = true;
       act(lock, when_idle_.action);
+      if (failure_) jobs_.clear();
+      changed_.notify_all();
       continue;
     }
     if (jobs_.empty()) return;

@@ -114,7 +114,8 @@ JobNeeds needs_of(const BatchMember& m, std::vector<std::string> overrides,
                               {.fits = here, .particles = false, .measured = true});
   JobNeeds needs;
   needs.device = about(start.scene().backend).on_device;
-  needs.particles = start.plan.particles;
+  needs.pictures = start.scene().render.has_value();
+  needs.particles = start.plan.most_particles();
   needs.host_bytes = start.plan.memory.host_peak();
   needs.device_bytes = start.plan.memory.device_arrays;
   if (ranks > 1) {

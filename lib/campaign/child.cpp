@@ -84,7 +84,8 @@ Child::Child(const std::vector<std::string>& args, int input,
 }
 
 Child::~Child() {
-  if (!end_) wait();
+  terminate();
+  wait();
   ::close(err_);
 }
 
@@ -99,7 +100,10 @@ JobEnd Child::ended(int status) {
 
 std::optional<JobEnd> Child::end() {
   int status = 0;
-  if (!end_ && ::waitpid(pid_, &status, WNOHANG) == pid_) ended(status);
+  if (end_) return end_;
+  const pid_t found = ::waitpid(pid_, &status, WNOHANG);
+  if (found == pid_) ended(status);
+  if (found < 0 && errno != EINTR) end_ = JobEnd{-1, ""};
   return end_;
 }
 

@@ -22,13 +22,14 @@ std::pair<JobChannel, JobChannel> JobChannel::pair() {
   return {JobChannel(fds[0]), JobChannel(fds[1])};
 }
 
-bool JobChannel::send(const Message& message) const {
+int JobChannel::send(const Message& message, bool wait) const {
   std::string bytes;
   for (const std::string& text : message) bytes += text + '\0';
   ssize_t sent = -1;
-  do sent = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  const int flags = MSG_NOSIGNAL | (wait ? 0 : MSG_DONTWAIT);
+  do sent = ::send(fd_, bytes.data(), bytes.size(), flags);
   while (sent < 0 && errno == EINTR);
-  return sent == static_cast<ssize_t>(bytes.size());
+  return sent < 0 ? errno : 0;
 }
 
 std::optional<Message> JobChannel::receive(bool wait) {

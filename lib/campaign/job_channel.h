@@ -22,8 +22,9 @@ class JobChannel {
   /// Error(unavailable).
   static std::pair<JobChannel, JobChannel> pair();
 
-  /// Whether the other end gets it: false when it is gone, or the message is too long.
-  bool send(const Message& message) const;
+  /// 0 when the other end gets it, or an errno: EMSGSIZE when it is too long, EAGAIN when there is
+  /// no room and it shall not wait, others when the other end is gone.
+  int send(const Message& message, bool wait) const;
   /// The next message; waits for it if it shall. None when none has come, or the other end is gone.
   std::optional<Message> receive(bool wait);
   bool gone() const { return gone_; }  ///< the other end, and all it sent was received

@@ -12,6 +12,7 @@
 namespace pbf::campaign_module {
 namespace {
 
+constexpr std::size_t kMostText = 8000;  // bytes of a message of a run
 constexpr const char* kVisible = "CUDA_VISIBLE_DEVICES";
 
 /// The environment in which GPU number `device` of this process is the only one. The first one is
@@ -54,7 +55,7 @@ class Serving {
  private:
   void tell(const std::string& job, const JobEnd& end) {
     const std::lock_guard alone(mutex_);
-    channel_.send({job, std::to_string(end.code), end.message});
+    channel_.send({job, std::to_string(end.code), end.message.substr(0, kMostText)}, true);
     ended_.insert(job);
   }
   void join_ended() {
@@ -82,7 +83,7 @@ class Serving {
 void serve_jobs(int fd, const std::function<JobEnd(const std::vector<std::string>&)>& run) {
   JobChannel channel(fd);
   const DeviceRoom room = device_room();
-  channel.send({std::to_string(room.devices), std::to_string(room.free_bytes)});
+  channel.send({std::to_string(room.devices), std::to_string(room.free_bytes)}, true);
   Serving serving(channel, run);
   while (std::optional<Message> message = channel.receive(true)) serving.start(*message);
 }
@@ -95,12 +96,18 @@ JobServer::JobServer(std::pair<JobChannel, JobChannel> ends, int device)
           std::make_unique<Child>(Message{kServeCommand}, ends.second.fd(), only_device(device))),
       channel_(std::move(ends.first)) {}
 
-bool JobServer::give(std::size_t job, const std::vector<std::string>& args) {
+int JobServer::give(std::size_t job, const std::vector<std::string>& args) {
   Message message{std::to_string(job)};
   message.insert(message.end(), args.begin(), args.end());
-  if (!channel_.send(message)) return false;
-  jobs_.insert(job);
-  return true;
+  const int reason = channel_.send(message, false);
+  if (reason == 0) jobs_.insert(job);
+  return reason;
+}
+
+std::string JobServer::last_words() {
+  const JobEnd end = child_->wait();
+  if (!end.message.empty()) return ": " + end.message;
+  return end.code > 128 ? ": killed by signal " + std::to_string(end.code - 128) : "";
 }
 
 void JobServer::end() {

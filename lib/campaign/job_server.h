@@ -31,17 +31,19 @@ class JobServer {
   int device() const { return device_; }  ///< as given
   /// Whether it has said what it has, from when on it takes jobs until end().
   bool ready() const { return ready_; }
-  bool takes_jobs() const { return ready_ && !ending_; }
+  bool ending() const { return ending_; }
   int devices() const { return devices_; }                     ///< GPUs that it sees
   std::int64_t free_bytes() const { return free_; }            ///< of its GPU, before the first job
   const std::set<std::size_t>& jobs() const { return jobs_; }  ///< under way
-  /// False if it cannot be reached, or the arguments are too long for a message.
-  bool give(std::size_t job, const std::vector<std::string>& args);
+  /// 0 if it has the job; else an errno, as JobChannel::send(), which does not wait.
+  int give(std::size_t job, const std::vector<std::string>& args);
   /// Takes what it has told since the last call: ended(job, end). Returns whether there was
   /// anything.
   bool look(const std::function<void(std::size_t, const JobEnd&)>& ended);
   /// Whether it is gone. What it has not told is lost: jobs() are those.
   bool gone() const { return channel_.gone(); }
+  /// ": " and what it said, or how it ended; once it is gone.
+  std::string last_words();
   void terminate() const { child_->terminate(); }
   void end();  ///< no more jobs; it ends after those under way
   int fd() const { return channel_.fd(); }

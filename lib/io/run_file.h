@@ -114,7 +114,7 @@ class RunWriter {
   ~RunWriter();
   /// Queues a frame of any particles; blocks while more than 2 wait. A frame is durable (on the
   /// disk, readable after kill -9 and after a power cut) once frames_written() counts it, at most
-  /// run_layout::commit_seconds after it was written.
+  /// twice run_layout::commit_seconds after it was written.
   void write(Snapshot&& snapshot);
   /// The same for a frame whose rows are elsewhere (lib/solver/split_rows.h): makes room for it,
   /// once all that was queued is done. Its ids are 0, 1, 2 ... `chunks` are empty in a file with

@@ -14,11 +14,10 @@ constexpr int kAcross = 24, kUp = 120;
 enum Place : char { solid, dry, wet };
 using PlacesUp = std::array<Place, kUp>;  ///< from the lowest one
 
-Place place_at(const Scene& s, const Double3& x, bool solids) {
-  if (solids && !is_free(s, x)) return solid;
-  for (const Body& b : s.bodies) {
-    if (b.from_file()) continue;
-    const BodyBox box = body_box(b);
+/// s: without what is from files.
+Place place_at(const Scene& s, const std::vector<BodyBox>& boxes, const Double3& x) {
+  if (!is_free(s, x)) return solid;
+  for (const BodyBox& box : boxes) {
     bool inside = true;
     for (std::size_t a = 0; a < 3; ++a)
       inside &= (s.dimensions == 2 && a == 1) || (x[a] >= box.low[a] && x[a] <= box.high[a]);
@@ -32,8 +31,11 @@ std::vector<PlacesUp> columns_of(const Scene& s) {
   const auto up = std::size_t(level_axis(s));
   const std::vector<int> across = axes_across_level(s);
   const bool turned = s.gravity[up] > 0;
-  const bool solids = std::ranges::none_of(
-      s.obstacles, [](const Obstacle& o) { return o.surface_file() != nullptr; });
+  Scene plain = s;
+  std::erase_if(plain.obstacles, [](const Obstacle& o) { return o.surface_file() != nullptr; });
+  std::erase_if(plain.bodies, [](const Body& b) { return b.from_file(); });
+  std::vector<BodyBox> boxes;
+  for (const Body& b : plain.bodies) boxes.push_back(body_box(b));
   const Double3 edge = s.domain.max - s.domain.min;
   std::vector<PlacesUp> columns;
   const int rows = across.size() > 1 ? kAcross : 1;
@@ -49,7 +51,7 @@ std::vector<PlacesUp> columns_of(const Scene& s) {
       for (int k = 0; k < kUp; ++k) {
         const double z = (k + 0.5) / kUp * edge[up];
         x[up] = turned ? s.domain.max[up] - z : s.domain.min[up] + z;
-        column[std::size_t(k)] = place_at(s, x, solids);
+        column[std::size_t(k)] = place_at(plain, boxes, x);
       }
     }
   return columns;
