@@ -50,6 +50,21 @@ bool reserve(hid_t file, std::int64_t from) {
   return true;
 }
 
+bool extend(hid_t file, std::int64_t bytes) {
+  haddr_t used = 0;
+  check(H5Fget_eoa(file, &used));
+  const std::int64_t size = stored_size(file), wanted = std::int64_t(used) + bytes;
+  return wanted <= size || ::fallocate(descriptor(file), 0, size, wanted - size) == 0 ||
+         errno == EOPNOTSUPP;
+}
+
+void trim(hid_t file) {
+  haddr_t used = 0;
+  check(H5Fget_eoa(file, &used));
+  if (stored_size(file) > std::int64_t(used) && ::ftruncate(descriptor(file), off_t(used)) != 0)
+    throw Failure(std::strerror(errno));
+}
+
 std::int64_t flush_reserved(hid_t file, bool longer) {
   if (reserve(file, stored_size(file)) || longer)
     sync(file);  // HDF5 opens no file shorter than its first page says

@@ -23,6 +23,12 @@ std::int64_t stored_size(hid_t file);
 /// reason.
 bool reserve(hid_t file, std::int64_t from);
 
+/// Makes the file longer, so that the disk has room for `bytes` more than HDF5 uses. False if it
+/// has not; then nothing is changed. HDF5 does not know of it: trim() ends the file where HDF5
+/// does.
+bool extend(hid_t file, std::int64_t bytes);
+void trim(hid_t file);
+
 /// Writes what HDF5 holds in memory; the size of the file in bytes. HDF5 goes on after a failed
 /// write and would leave a file that refers to what is not there, so the space is made sure of
 /// first: nothing can fail after that. longer: the file has become longer since it was stored.

@@ -55,6 +55,14 @@ RunOutput::~RunOutput() {
 
 void RunOutput::write_frame(const Snapshot& s) {
   if (added_ % run_layout::step_rows == 0) commit();  // their times are in one chunk of the table
+  if (added_ > frames_) {
+    std::int64_t bytes = std::int64_t{1} << 20;  // of tables and indices
+    for (const FieldArray& f : s.fields) bytes += 2 * std::int64_t(f.bytes.size());
+    if (h5::extend(file_, bytes))
+      longer_ = true;
+    else
+      commit();  // while it is possible: the disk is nearly full
+  }
   add_frame(s, nullptr);
   commit_if_due();
 }
@@ -161,7 +169,9 @@ void RunOutput::close(const RunEnding& end) {
   write_warnings(end.warnings);
   write_comparisons(end.comparisons);
   h5::write_text(pbf_, "status", end.status);
-  store();
+  flush();
+  h5::trim(file_);
+  h5::sync(file_);
   closed_ = true;
 }
 

@@ -77,6 +77,7 @@ struct RunWriter::Impl {
       bytes_ = out_->bytes();
       frames_ = out_->frames();
     } catch (const h5::Failure& f) {
+      if (out_) frames_ = out_->frames();
       out_.reset();
       std::string kept;
       if (frames_ == 1) kept = "; frame 0 is kept";

@@ -86,10 +86,13 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
   add("columns of coordinates", word(s.precision), s.dimensions, n);
   add("table of lists", "int64", 3, chunks);
-  // The lists of a group, among the candidates of its last particle; a reserve of a quarter.
+  // The lists of a group, each with room for a vector, and what over-dense starts take beside them;
+  // a reserve of a quarter.
+  const double all = double(n), longest = std::min(all, std::max(double(entries), start.most));
+  const double found =
+      std::min(all, 16.0) * longest + std::min(all * all / 4, 8 * longest) + 16 * 16;
   add("neighbors found by each thread", "int32", 1,
-      std::min<std::int64_t>(threads, chunks) *
-          std::int64_t(1.25 * 24 * (std::max(double(entries), start.most) + 16)));
+      std::min<std::int64_t>(threads, chunks) * std::int64_t(1.25 * found));
 }
 
 void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, bool rank,

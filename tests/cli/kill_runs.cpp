@@ -26,7 +26,7 @@ std::string write_frequent(const Scratch& folder) {
                       "fluid: {spacing: 0.05}\n"
                       "bodies:\n"
                       "  - {shape: block, min: [0, 0, 0], max: [0.4, 0.6, 0.6]}\n"
-                      "time: {step: 0.002, end: 1.2}\n"
+                      "time: {step: 0.002, end: 4.8}\n"
                       "viscosity: {}\n"
                       "measure_every: 4\n"
                       "checkpoint: {every: 0.05}\n"
