@@ -82,15 +82,19 @@ class CpuLists : protected CpuThreads {
     Real* const all = reinterpret_cast<Real*>(columns_.data());
     const Columns<Real> columns{all, flat ? nullptr : all + 2 * length, all + length};
     if (rows.first >= rows.last) return columns;
-    // Rows are in the order of cells, so the runs of the first and the last row enclose all others.
-    int first = far, last = 0;
-    for (const int i : {rows.first, rows.last - 1}) {
-      const auto enclose = [&](int b, int e) {
-        first = std::min(first, b), last = std::max(last, e);
-      };
-      flat ? for_each_run<2>(xyz(position[i]), bin_start, p, enclose)
-           : for_each_run<3>(xyz(position[i]), bin_start, p, enclose);
-    }
+    // Rows are in the order of cells, z slowest: all candidates are in the layers from the one
+    // below the first row to the one above the last. The runs of these two rows do not enclose all
+    // others: they end at the edges of a layer.
+    const auto start_of_layer = [&](int z) {
+      const int layer = flat ? p.cells_x : p.cells_x * p.cells_y;
+      return bin_start[std::clamp(z, 0, p.cells_z) * layer * bins_per_cell(flat ? 2 : 3)];
+    };
+    const auto layer_of = [&](int i) {
+      const Vec3<Real> x = xyz(position[i]);
+      return flat ? cell_of<2>(x, p).z : cell_of<3>(x, p).z;
+    };
+    const int first = start_of_layer(layer_of(rows.first) - 1),
+              last = start_of_layer(layer_of(rows.last - 1) + 2);
     in_pieces<1>(
         last, [&](int b, int e) { fill(simd_, position, b, e, columns); }, first);
     return columns;
