@@ -1,6 +1,4 @@
 // pbf serve-batch: runs of a batch, several at a time in one process. Only pbf batch starts it.
-#include <algorithm>
-
 #include "app/commands.h"
 #include "app/options.h"
 #include "lib/base/plain_text.h"
@@ -16,9 +14,7 @@ int command_serve_batch(const ServeOptions& /*none*/) {
   watch_signals();
   serve_jobs(0, [](const std::vector<std::string>& words) {
     const Ending end = execute(words);
-    JobEnd told{end.code, escaped(end.message)};
-    std::ranges::replace(told.message, '\n', ' ');
-    return told;
+    return JobEnd{end.code, job_message(escaped(end.message))};
   });
   return 0;
 }

@@ -29,26 +29,22 @@ PBF_HD void set_row(OwnRows<Vec4<Real>> a, Adjacent<W> i, const Vec4<Lanes<Real,
   } else {
     // As in transposed(), backward.
     using Vector = typename Lanes<Real, W>::Vector;
-    constexpr auto low = [](int l) { return l / 2 + 4 * (l % 2); };
-    constexpr auto high = [](int l) { return l / 2 + 2 + 4 * (l % 2); };
-    constexpr auto first = [](int l) { return l % 2 + 4 * (l / 2); };
-    constexpr auto second = [](int l) { return l % 2 + 2 + 4 * (l / 2); };
-    const Vector xy0 = shuffled<Real, W>(value.x.v, value.y.v, low);
-    const Vector xy1 = shuffled<Real, W>(value.x.v, value.y.v, high);
-    const Vector zw0 = shuffled<Real, W>(value.z.v, value.w.v, low);
-    const Vector zw1 = shuffled<Real, W>(value.z.v, value.w.v, high);
-    const Vector rows[4] = {shuffled<Real, W>(xy0, zw0, first), shuffled<Real, W>(xy0, zw0, second),
-                            shuffled<Real, W>(xy1, zw1, first),
-                            shuffled<Real, W>(xy1, zw1, second)};
-    const auto block = [&](const Vector& v, auto k) __attribute__((always_inline)) {
+    const Vector xy0 = shuffled<Real, W>(value.x.v, value.y.v, block::low);
+    const Vector xy1 = shuffled<Real, W>(value.x.v, value.y.v, block::high);
+    const Vector zw0 = shuffled<Real, W>(value.z.v, value.w.v, block::low);
+    const Vector zw1 = shuffled<Real, W>(value.z.v, value.w.v, block::high);
+    const Vector rows[4] = {
+        shuffled<Real, W>(xy0, zw0, block::first), shuffled<Real, W>(xy0, zw0, block::second),
+        shuffled<Real, W>(xy1, zw1, block::first), shuffled<Real, W>(xy1, zw1, block::second)};
+    const auto part = [&](const Vector& v, auto k) __attribute__((always_inline)) {
       constexpr int b = 4 * decltype(k)::value;
       return Lanes<Real, 4>(__builtin_shufflevector(v, v, b, b + 1, b + 2, b + 3));
     };
     [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) {
-      ((block(rows[0], std::integral_constant<int, k>{}).to(&to[4 * k].x),
-        block(rows[1], std::integral_constant<int, k>{}).to(&to[4 * k + 1].x),
-        block(rows[2], std::integral_constant<int, k>{}).to(&to[4 * k + 2].x),
-        block(rows[3], std::integral_constant<int, k>{}).to(&to[4 * k + 3].x)),
+      ((part(rows[0], std::integral_constant<int, k>{}).to(&to[4 * k].x),
+        part(rows[1], std::integral_constant<int, k>{}).to(&to[4 * k + 1].x),
+        part(rows[2], std::integral_constant<int, k>{}).to(&to[4 * k + 2].x),
+        part(rows[3], std::integral_constant<int, k>{}).to(&to[4 * k + 3].x)),
        ...);
     }
     (std::make_integer_sequence<int, W / 4>{});

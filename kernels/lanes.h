@@ -170,6 +170,14 @@ PBF_HD typename Lanes<Real, W>::Vector shuffled(const typename Lanes<Real, W>::V
   (std::make_integer_sequence<int, W>{});
 }
 
+/// Patterns that transpose every block of 4 x 4: pairs of rows, then pairs of those.
+namespace block {
+inline constexpr auto low = [](int l) { return l / 2 + 4 * (l % 2); };       // 0 4 1 5
+inline constexpr auto high = [](int l) { return l / 2 + 2 + 4 * (l % 2); };  // 2 6 3 7
+inline constexpr auto first = [](int l) { return l % 2 + 4 * (l / 2); };     // 0 1 4 5
+inline constexpr auto second = [](int l) { return l % 2 + 2 + 4 * (l / 2); };
+}  // namespace block
+
 /// Transposes the rows (x, y, z, w) of W particles into one vector per component: one load per
 /// particle and shuffles of whole registers, which is cheaper than four gathers.
 template <class Real, int W, class Index>
@@ -200,21 +208,15 @@ PBF_HD Vec4<Lanes<Real, W>> transposed(const Vec4<Real>* a, Index i) {
             5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
       }
     }
-    // Every block of 4 x 4 separately: pairs of rows into xy and zw, then pairs of those.
-    const auto shuffle =
-        [](const Vector& b, const Vector& c, auto pattern) __attribute__((always_inline)) {
-      return shuffled<Real, W>(b, c, pattern);
-    };
-    constexpr auto low = [](int l) { return l / 2 + 4 * (l % 2); };       // 0 4 1 5
-    constexpr auto high = [](int l) { return l / 2 + 2 + 4 * (l % 2); };  // 2 6 3 7
-    constexpr auto first = [](int l) { return l % 2 + 4 * (l / 2); };     // 0 1 4 5
-    constexpr auto second = [](int l) { return l % 2 + 2 + 4 * (l / 2); };
-    const Vector xy0 = shuffle(row[0], row[1], low), xy1 = shuffle(row[2], row[3], low);
-    const Vector zw0 = shuffle(row[0], row[1], high), zw1 = shuffle(row[2], row[3], high);
-    r.x = shuffle(xy0, xy1, first);
-    r.y = shuffle(xy0, xy1, second);
-    r.z = shuffle(zw0, zw1, first);
-    r.w = shuffle(zw0, zw1, second);
+    // Pairs of rows into xy and zw, then pairs of those.
+    const Vector xy0 = shuffled<Real, W>(row[0], row[1], block::low);
+    const Vector xy1 = shuffled<Real, W>(row[2], row[3], block::low);
+    const Vector zw0 = shuffled<Real, W>(row[0], row[1], block::high);
+    const Vector zw1 = shuffled<Real, W>(row[2], row[3], block::high);
+    r.x = shuffled<Real, W>(xy0, xy1, block::first);
+    r.y = shuffled<Real, W>(xy0, xy1, block::second);
+    r.z = shuffled<Real, W>(zw0, zw1, block::first);
+    r.w = shuffled<Real, W>(zw0, zw1, block::second);
   }
   return r;
 }

@@ -8,9 +8,8 @@
 //   SumOf<V> (value-initialized to 0)  and each(f): f(V&) for every member
 //   add(SumOf<V>&, own, other) const   adds the term of one neighbor
 //   finish(i, Own, Sum) const          writes the result
-//   together(Sum) const                optional: whether finish() may be called for a whole group
-//   of
-//                                      rows, which then are several particles like those of add()
+//   together(Sum) const                optional: whether finish() may be called for several
+//                                      particles at once, like add()
 //   stays_far, far_bound               if it moves particles: boundary/near_split.h
 // V is Real for one particle and Lanes for several at once (kernels/lanes.h). Own and Sum are the
 // types for one particle. A finish() for several has the same formulas with choose() for branches.

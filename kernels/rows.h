@@ -25,8 +25,8 @@ class OwnRows {
   T* rows_ = nullptr;
 };
 
-/// Row i of an array that a pass may also write, and its change. kernels/lanes.h has both for
-/// several rows.
+/// Row i of an array that a pass may also write, and its change. kernels/lane_groups.h has both
+/// for several rows.
 template <class T>
 PBF_HD T row(OwnRows<T> a, int i) {
   return a[i];

@@ -76,8 +76,8 @@ PBF_HD Vec3<R> in_space(R y) {
   return {R(0), y, R(0)};
 }
 
-// Conditions of formulas that are also for several particles at once, for which kernels/lanes.h has
-// the same functions. For one particle, a condition is a bool.
+// Conditions of formulas that are also for several particles at once, for which kernels/lanes.h and
+// lane_groups.h have the same functions. For one particle, a condition is a bool.
 /// a where `c` holds, b elsewhere.
 template <class Real>
 requires std::is_floating_point_v<Real> PBF_HD Real choose(bool c, Real a, Real b) {

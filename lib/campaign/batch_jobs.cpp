@@ -63,7 +63,10 @@ class Jobs {
   void start() {
     if (shared_.empty() && under_way() == 0 && !again_.empty()) {
       for (const auto& s : servers_) s->end();
-      if (servers_.empty()) alone_.swap(again_);
+      if (servers_.empty()) {
+        alone_.insert(alone_.end(), again_.begin(), again_.end());
+        again_.clear();
+      }
     }
     while (running_.size() < std::size_t(limits_.alone) && !alone_.empty() && !calls_.stop()) {
       const std::size_t job = alone_.front();

@@ -26,10 +26,7 @@ std::string error_line(int fd) {
   const std::string mark = "pbf: error: ";
   const std::size_t at = text.rfind(mark);
   if (at == std::string::npos) return {};
-  std::string line = text.substr(at + mark.size());
-  line.erase(line.find_last_not_of('\n') + 1);
-  std::ranges::replace(line, '\n', ' ');
-  return line;
+  return job_message(text.substr(at + mark.size()));
 }
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
@@ -51,6 +48,12 @@ std::vector<std::string> changed_environment(const std::vector<std::string>& cha
 }
 
 }  // namespace
+
+std::string job_message(std::string text) {
+  text.erase(text.find_last_not_of('\n') + 1);
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
 
 Child::Child(const std::vector<std::string>& args, int input,
              const std::vector<std::string>& environment) {

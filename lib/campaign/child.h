@@ -15,6 +15,9 @@ struct JobEnd {
   std::string message;  ///< the line after "pbf: error: " on stderr; may be empty
 };
 
+/// An error's text as JobEnd has it: on one line.
+std::string job_message(std::string text);
+
 /// This program with other arguments, in a process of its own without standard output. It gets
 /// SIGTERM when this process ends, in any way. Not copied.
 class Child {

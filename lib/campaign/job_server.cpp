@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lib/base/error.h"
+#include "lib/base/plain_text.h"
 #include "lib/base/start_thread.h"
 #include "lib/exec/devices.h"
 
@@ -55,7 +56,7 @@ class Serving {
  private:
   void tell(const std::string& job, const JobEnd& end) {
     const std::lock_guard alone(mutex_);
-    channel_.send({job, std::to_string(end.code), end.message.substr(0, kMostText)}, true);
+    channel_.send({job, std::to_string(end.code), one_line(end.message, kMostText)}, true);
     ended_.insert(job);
   }
   void join_ended() {

@@ -207,7 +207,6 @@ void write_checkpoint(const std::string& folder, const SavedRun& saved, const Gi
     }
     if (is_there(path)) rename_or_fail(path, folder + "/checkpoint_prev.h5");
     rename_or_fail(temporary, path);
-    const h5::Lock lock;
     h5::sync_folder(folder);
   } catch (const h5::Failure& f) {
     ::unlink(temporary.c_str());

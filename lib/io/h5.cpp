@@ -42,12 +42,13 @@ Lock::~Lock() { held_here = false; }
 bool Lock::held() { return held_here; }
 
 Unlocked::Unlocked() {
-  require_lock();
+  if (!held_) return;
   held_here = false;
   process_mutex.unlock();
 }
 
 Unlocked::~Unlocked() {
+  if (!held_) return;
   process_mutex.lock();
   held_here = true;
 }

@@ -29,13 +29,16 @@ class Lock {
   std::unique_lock<std::mutex> lock_;
 };
 
-/// Gives the Lock of this thread to others during its lifetime, for what takes long and is none of
-/// HDF5's: waiting for the disk.
+/// Gives the Lock of this thread, if it has it, to others during its lifetime, for what takes long
+/// and is none of HDF5's: waiting for the disk.
 class Unlocked {
  public:
   Unlocked();
   ~Unlocked();
   Unlocked(const Unlocked&) = delete;
+
+ private:
+  const bool held_ = Lock::held();
 };
 
 /// The reason of the last failed HDF5 call of this thread, as short as it can be said: the

@@ -10,6 +10,17 @@
 
 namespace pbf::io_module::h5 {
 
+namespace {
+
+/// Room on the disk from byte `from` to `to`, the end of the file; where the file system cannot
+/// take it, the size alone. False with an errno.
+bool take(hid_t file, off_t from, off_t to) {
+  return ::fallocate(descriptor(file), 0, from, to - from) == 0 ||
+         (errno == EOPNOTSUPP && ::ftruncate(descriptor(file), to) == 0);
+}
+
+}  // namespace
+
 Properties writer_access() {
   Properties p = file_access();
   check(H5Pset_cache(p, 0, 0, 0, 0));
@@ -44,9 +55,7 @@ bool reserve(hid_t file, std::int64_t from) {
   check(H5Fget_eoa(file, &end));
   const off_t wanted = static_cast<off_t>(end);
   if (wanted <= from) return false;
-  if (::fallocate(descriptor(file), 0, from, wanted - from) != 0 &&
-      !(errno == EOPNOTSUPP && ::ftruncate(descriptor(file), wanted) == 0))
-    throw Failure(std::strerror(errno));
+  if (!take(file, from, wanted)) throw Failure(std::strerror(errno));
   return true;
 }
 
@@ -54,8 +63,7 @@ bool extend(hid_t file, std::int64_t bytes) {
   haddr_t used = 0;
   check(H5Fget_eoa(file, &used));
   const std::int64_t size = stored_size(file), wanted = std::int64_t(used) + bytes;
-  return wanted <= size || ::fallocate(descriptor(file), 0, size, wanted - size) == 0 ||
-         errno == EOPNOTSUPP;
+  return wanted <= size || take(file, size, wanted);
 }
 
 void trim(hid_t file) {

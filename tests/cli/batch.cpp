@@ -21,20 +21,6 @@ std::string summary(const fs::path& folder) {
   return all;
 }
 
-/// A process that `parent` has started; 0 when there is none.
-pid_t child_of(pid_t parent) {
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename().string();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string stat = read_text(entry.path() / "stat");
-    std::istringstream words(stat.substr(stat.rfind(')') + 1));
-    char state = 0;
-    pid_t of = 0;
-    if (words >> state >> of && of == parent) return std::stoi(name);
-  }
-  return 0;
-}
-
 }  // namespace
 
 TEST_CASE("a batch of 12 runs killed at random and rerun has the summary of the undisturbed one",

@@ -2,7 +2,6 @@
 // that process.
 #include <csignal>
 #include <set>
-#include <sstream>
 
 #include "lib/io/run_file.h"
 #include "tests/support/catch.h"
@@ -31,27 +30,6 @@ Args batch_of(const char* out, const char* share) {
           "--jobs",    "3",
           "--threads", "1",
           "--share",   share};
-}
-
-/// The processes that `parent` has started, as their command lines.
-std::set<std::pair<pid_t, std::string>> processes_of(pid_t parent) {
-  std::set<std::pair<pid_t, std::string>> all;
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename().string();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string stat = read_text(entry.path() / "stat");
-    std::istringstream words(stat.substr(stat.rfind(')') + 1));
-    char state = 0;
-    pid_t of = 0;
-    if (words >> state >> of && of == parent)
-      all.emplace(std::stoi(name), read_text(entry.path() / "cmdline"));
-  }
-  return all;
-}
-pid_t server_of(pid_t batch) {
-  for (const auto& [id, line] : processes_of(batch))
-    if (has(line, "serve-batch")) return id;
-  return 0;
 }
 
 /// Every run of `b` is that of `a`, to the last bit.
@@ -96,7 +74,7 @@ TEST_CASE("when the process that runs share dies, none of them is lost", "[slow]
   Process batch(batch_of("b", "yes"), folder.path());
   std::set<pid_t> killed;
   wait_until([&] {  // each one that it starts, three times
-    const pid_t server = server_of(batch.id());
+    const pid_t server = child_of(batch.id(), "serve-batch");
     const bool busy =
         fs::exists(folder / "b") &&
         std::distance(fs::directory_iterator(folder / "b"), fs::directory_iterator()) > 0;
@@ -121,7 +99,7 @@ TEST_CASE("a signal to a batch whose runs share a process saves them all, and th
   wait_until([&] {
     return fs::exists(folder / "b/s_iterations=1_xsph=0/run.vtkhdf") || !batch.running();
   });
-  const pid_t server = server_of(batch.id());
+  const pid_t server = child_of(batch.id(), "serve-batch");
   batch.send(signal);
   const Outcome o = batch.wait();
   CAPTURE(o.err);

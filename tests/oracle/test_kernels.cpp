@@ -96,7 +96,8 @@ TEST_CASE("the walls' gradient is the derivative of their density in the consist
     const auto g = box.term<Smoothing::consistent>(x).gradient;
     const double e = 1e-6;
     auto density = [&](double dx, double dy, double dz) {
-      return box.term<Smoothing::consistent>({x.x + dx, x.y + dy, x.z + dz}).density;
+      const Vec3<double> y{x.x + dx, x.y + dy, x.z + dz};
+      return box.term<Smoothing::consistent>(y).density;
     };
     CHECK(g.x == Approx((density(e, 0, 0) - density(-e, 0, 0)) / (2 * e)).margin(1e-7));
     CHECK(g.y == Approx((density(0, e, 0) - density(0, -e, 0)) / (2 * e)).margin(1e-7));

@@ -9,10 +9,25 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 namespace pbf::test {
 namespace fs = std::filesystem;
+
+pid_t child_of(pid_t parent, const std::string& word) {
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string stat = read_text(entry.path() / "stat");
+    std::istringstream words(stat.substr(stat.rfind(')') + 1));
+    char state = 0;
+    pid_t of = 0;
+    if (words >> state >> of && of == parent && has(read_text(entry.path() / "cmdline"), word))
+      return std::stoi(name);
+  }
+  return 0;
+}
 
 Process::Process(const std::vector<std::string>& args, const fs::path& folder,
                  const std::vector<std::string>& environment) {

@@ -55,6 +55,9 @@ void wait_until(Condition there) {
   CHECK(comes_true(there, 60));
 }
 
+/// A process that `parent` has started, with this word in its command line; 0 when there is none.
+pid_t child_of(pid_t parent, const std::string& word = "");
+
 using Args = std::vector<std::string>;
 
 /// Runs `pbf args...` to its end.
