@@ -138,27 +138,41 @@ TEST_CASE("particles that have left the grid are spread over it, not piled up at
   CHECK(*std::max_element(count.begin(), count.end()) < mean * 2);
 }
 
-TEST_CASE("more than 16384 particles are sorted by bin and id, by 1, 2 and 5 threads alike") {
+TEST_CASE("any number of threads sorts by bin and id, and leaves out rows without a bin") {
   std::mt19937 gen(3);
-  const int n = 40000, cells = 500;
-  std::vector<int> cell(n);
-  for (int& c : cell) c = int(gen() % cells);
-  std::vector<int> id(n), expected(n), start(cells + 1);
+  const int n = GENERATE(0, 1, 3, 9000, 40000), cells = 500;
+  const bool sorted_before = GENERATE(false, true), all_leave = GENERATE(false, true);
+  const BinRange range = GENERATE(BinRange{0, cells}, BinRange{100, 350}, BinRange{7, 8});
+  std::vector<int> cell(std::size_t(n), 0);
+  for (int& c : cell) c = all_leave ? -1 : int(gen() % cells);
+  if (sorted_before) std::sort(cell.begin(), cell.end());
+  for (int k = 0; k < n / 10; ++k) {  // strays, and rows that leave
+    if (!all_leave) cell[gen() % std::size_t(n)] = int(gen() % cells);
+    cell[gen() % std::size_t(n)] = -1;
+  }
+  std::vector<int> id(std::size_t(n), 0), expected, start(cells + 1, -5);
   std::iota(id.begin(), id.end(), 0);
   std::shuffle(id.begin(), id.end(), gen);
-  std::iota(expected.begin(), expected.end(), 0);
+  for (int i = 0; i < n; ++i)
+    if (range.has(cell[std::size_t(i)])) expected.push_back(i);
   std::sort(expected.begin(), expected.end(), [&](int a, int b) {
     const auto row = [&](int i) {
       return std::make_pair(cell[std::size_t(i)], id[std::size_t(i)]);
     };
     return row(a) < row(b);
   });
-  for (int threads : {1, 2, 5}) {
+  for (int threads : {1, 2, 5, 16}) {
+    CAPTURE(n, sorted_before, all_leave, range.begin, range.end, threads);
     CpuExec exec(threads);
-    std::vector<int> order(n);
-    exec.sort(cell.data(), id.data(), n, {0, cells}, order.data(), start.data());
+    std::vector<int> order(std::size_t(n), 0);
+    exec.sort(cell.data(), id.data(), n, range, order.data(), start.data());
+    order.resize(expected.size());
     CHECK(order == expected);
-    CHECK(start[cells] == n);
+    std::size_t before = 0;  // in the bins below
+    for (int b = range.begin; b <= range.end; ++b) {
+      while (before < expected.size() && cell[std::size_t(expected[before])] < b) ++before;
+      REQUIRE(start[std::size_t(b)] == int(before));
+    }
   }
 }
 

@@ -31,38 +31,57 @@ void sort_within_bins(const int* bin, const int* id, int first, int last, int* o
 
 void CpuExec::sort(const int* bin, const int* id, int n, const BinRange& bins, int* order,
                    int* start) {
-  // Every thread counts and places the particles of its own range of bins, in order; only `start`
-  // is needed as memory. Particles are nearly in the order of the last sort, so the bins at equal
-  // distances among them divide the work about equally. At most 4 threads, since each looks at
-  // every particle; the sort is a small part of an update.
-  const int threads = n > 16384 ? std::min(threads_, 4) : 1;
-  int low[5] = {bins.begin}, placed[4] = {0};
+  // Every thread counts and places the particles of its own range of bins, in order. Particles are
+  // nearly in the order of the last sort, so the bins at equal distances among them divide the work
+  // about equally, and a thread needs to look at few chunks of particles besides its own.
+  const int threads = std::clamp(n / kSortShare, 1, threads_);
+  const int chunks = (n + kChunk - 1) / kChunk;
+  std::vector<int> low(std::size_t(threads) + 1, bins.end), placed(std::size_t(threads), 0);
+  low[0] = bins.begin;
   for (int t = 1; t < threads; ++t)
-    low[t] = std::clamp(bin[std::int64_t(n) * t / threads], low[t - 1], bins.end);
-  low[threads] = bins.end;
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    low[std::size_t(t)] =
+        std::clamp(bin[std::int64_t(n) * t / threads], low[std::size_t(t) - 1], bins.end);
+  chunk_bins_.assign(std::size_t(chunks), bins);
+  if (threads > 1)
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int c = 0; c < chunks; ++c) {
+      int least = bins.end, most = bins.begin - 1;
+      for (int i = c * kChunk; i < std::min(n - c * kChunk, kChunk) + c * kChunk; ++i)
+        if (bins.has(bin[i])) least = std::min(least, bin[i]), most = std::max(most, bin[i]);
+      chunk_bins_[std::size_t(c)] = {least, most + 1};
+    }
+  // f(row) for the rows of the bins of thread t, in order.
+  const auto for_rows_of = [&](int t, const auto& f) {
+    const int first = low[std::size_t(t)], end = low[std::size_t(t) + 1];
+    const auto size = unsigned(end - first);
+    for (int c = 0; c < chunks; ++c) {
+      const BinRange here = chunk_bins_[std::size_t(c)];
+      if (here.end <= first || here.begin >= end) continue;
+      const int last = std::min(n - c * kChunk, kChunk) + c * kChunk;
+      for (int i = c * kChunk; i < last; ++i)
+        if (unsigned(bin[i] - first) < size) f(i);
+    }
+  };
+#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
   for (int t = 0; t < threads; ++t) {
-    std::fill(start + low[t], start + low[t + 1], 0);
-    const auto size = unsigned(low[t + 1] - low[t]);
+    std::fill(start + low[std::size_t(t)], start + low[std::size_t(t) + 1], 0);
     int count = 0;
-    for (int i = 0; i < n; ++i)
-      if (unsigned(bin[i] - low[t]) < size) ++start[bin[i]], ++count;
-    placed[t] = count;
+    for_rows_of(t, [&](int i) { ++start[bin[i]], ++count; });
+    placed[std::size_t(t)] = count;
   }
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
+#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
   for (int t = 0; t < threads; ++t) {
-    const auto size = unsigned(low[t + 1] - low[t]);
-    if (size == 0) continue;
-    const int first = std::accumulate(placed, placed + t, 0);
-    std::exclusive_scan(start + low[t], start + low[t + 1], start + low[t], first);
-    for (int i = 0; i < n; ++i)
-      if (unsigned(bin[i] - low[t]) < size) order[start[bin[i]]++] = i;
-    sort_within_bins(bin, id, first, first + placed[t], order);
+    int *const begin = start + low[std::size_t(t)], *const end = start + low[std::size_t(t) + 1];
+    if (begin == end) continue;
+    const int first = std::accumulate(placed.begin(), placed.begin() + t, 0);
+    std::exclusive_scan(begin, end, begin, first);
+    for_rows_of(t, [&](int i) { order[start[bin[i]]++] = i; });
+    sort_within_bins(bin, id, first, first + placed[std::size_t(t)], order);
     // Every entry of `start` is now the start of the next bin.
-    std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
-    start[low[t]] = first;
+    std::copy_backward(begin, end - 1, end);
+    *begin = first;
   }
-  start[bins.end] = std::accumulate(placed, placed + threads, 0);
+  start[bins.end] = std::accumulate(placed.begin(), placed.end(), 0);
 }
 
 void CpuExec::rank(int n, const int* id, int* place) {
@@ -90,7 +109,8 @@ void CpuExec::describe(SolverInfo& info) const {
 }
 
 std::size_t CpuExec::bytes() const {
-  return list_bytes() + in_bins_.capacity() * sizeof in_bins_[0];
+  return list_bytes() + in_bins_.capacity() * sizeof in_bins_[0] +
+         chunk_bins_.capacity() * sizeof chunk_bins_[0];
 }
 
 }  // namespace pbf::PBF_VARIANT
