@@ -34,54 +34,63 @@ void CpuExec::sort(const int* bin, const int* id, int n, const BinRange& bins, i
   // Every thread counts and places the particles of its own range of bins, in order. Particles are
   // nearly in the order of the last sort, so the bins at equal distances among them divide the work
   // about equally, and a thread needs to look at few chunks of particles besides its own.
-  const int threads = std::clamp(n / kSortShare, 1, threads_);
+  const int threads = std::clamp(n / 4096, 1, threads_);
   const int chunks = (n + kChunk - 1) / kChunk;
-  std::vector<int> low(std::size_t(threads) + 1, bins.end), placed(std::size_t(threads), 0);
-  low[0] = bins.begin;
-  for (int t = 1; t < threads; ++t)
-    low[std::size_t(t)] =
-        std::clamp(bin[std::int64_t(n) * t / threads], low[std::size_t(t) - 1], bins.end);
-  chunk_bins_.assign(std::size_t(chunks), bins);
+  struct Share {  // of a thread
+    BinRange bins;
+    int first = 0, rows = 0;  ///< places in `order`
+  };
+  std::vector<Share> shares(std::size_t(threads), {bins});
+  for (std::size_t t = 1; t < shares.size(); ++t) {
+    const int there = bin[std::int64_t(n) * std::int64_t(t) / threads];
+    shares[t].bins.begin = std::clamp(there, shares[t - 1].bins.begin, bins.end);
+    shares[t - 1].bins.end = shares[t].bins.begin;
+  }
+  const auto for_rows_of_chunk = [&](int c, const auto& f) {
+    const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
+    for (int i = first; i < last; ++i) f(i);
+  };
+  std::vector<BinRange> bins_of_chunk(std::size_t(chunks), bins);
   if (threads > 1)
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int c = 0; c < chunks; ++c) {
       int least = bins.end, most = bins.begin - 1;
-      for (int i = c * kChunk; i < std::min(n - c * kChunk, kChunk) + c * kChunk; ++i)
+      for_rows_of_chunk(c, [&](int i) {
         if (bins.has(bin[i])) least = std::min(least, bin[i]), most = std::max(most, bin[i]);
-      chunk_bins_[std::size_t(c)] = {least, most + 1};
+      });
+      bins_of_chunk[std::size_t(c)] = {least, most + 1};
     }
-  // f(row) for the rows of the bins of thread t, in order.
-  const auto for_rows_of = [&](int t, const auto& f) {
-    const int first = low[std::size_t(t)], end = low[std::size_t(t) + 1];
-    const auto size = unsigned(end - first);
+  // f(row) for the rows with these bins, in order.
+  const auto for_rows_of = [&](const BinRange& mine, const auto& f) {
     for (int c = 0; c < chunks; ++c) {
-      const BinRange here = chunk_bins_[std::size_t(c)];
-      if (here.end <= first || here.begin >= end) continue;
-      const int last = std::min(n - c * kChunk, kChunk) + c * kChunk;
-      for (int i = c * kChunk; i < last; ++i)
-        if (unsigned(bin[i] - first) < size) f(i);
+      const BinRange here = bins_of_chunk[std::size_t(c)];
+      if (here.end <= mine.begin || here.begin >= mine.end) continue;
+      for_rows_of_chunk(c, [&](int i) {
+        if (mine.has(bin[i])) f(i);
+      });
     }
   };
 #pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
-  for (int t = 0; t < threads; ++t) {
-    std::fill(start + low[std::size_t(t)], start + low[std::size_t(t) + 1], 0);
-    int count = 0;
-    for_rows_of(t, [&](int i) { ++start[bin[i]], ++count; });
-    placed[std::size_t(t)] = count;
+  for (Share& share : shares) {
+    std::fill(start + share.bins.begin, start + share.bins.end, 0);
+    int rows = 0;
+    for_rows_of(share.bins, [&](int i) { ++start[bin[i]], ++rows; });
+    share.rows = rows;
   }
+  int all = 0;
+  for (Share& share : shares) share.first = all, all += share.rows;
 #pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
-  for (int t = 0; t < threads; ++t) {
-    int *const begin = start + low[std::size_t(t)], *const end = start + low[std::size_t(t) + 1];
-    if (begin == end) continue;
-    const int first = std::accumulate(placed.begin(), placed.begin() + t, 0);
-    std::exclusive_scan(begin, end, begin, first);
-    for_rows_of(t, [&](int i) { order[start[bin[i]]++] = i; });
-    sort_within_bins(bin, id, first, first + placed[std::size_t(t)], order);
+  for (const Share& share : shares) {
+    if (share.bins.begin == share.bins.end) continue;
+    int *const begin = start + share.bins.begin, *const end = start + share.bins.end;
+    std::exclusive_scan(begin, end, begin, share.first);
+    for_rows_of(share.bins, [&](int i) { order[start[bin[i]]++] = i; });
+    sort_within_bins(bin, id, share.first, share.first + share.rows, order);
     // Every entry of `start` is now the start of the next bin.
     std::copy_backward(begin, end - 1, end);
-    *begin = first;
+    *begin = share.first;
   }
-  start[bins.end] = std::accumulate(placed.begin(), placed.end(), 0);
+  start[bins.end] = all;
 }
 
 void CpuExec::rank(int n, const int* id, int* place) {
@@ -109,8 +118,7 @@ void CpuExec::describe(SolverInfo& info) const {
 }
 
 std::size_t CpuExec::bytes() const {
-  return list_bytes() + in_bins_.capacity() * sizeof in_bins_[0] +
-         chunk_bins_.capacity() * sizeof chunk_bins_[0];
+  return list_bytes() + in_bins_.capacity() * sizeof in_bins_[0];
 }
 
 }  // namespace pbf::PBF_VARIANT

@@ -229,10 +229,7 @@ class CpuExec : public CpuRows, protected CpuLists {
   std::size_t bytes() const;
 
  private:
-  static constexpr int kSortShare = 4096;  ///< particles for a thread of a sort
-
   StageClock clock_;
-  std::vector<BinRange> chunk_bins_;  ///< of a sort: the bins of each chunk of rows
 };
 
 }  // namespace pbf::PBF_VARIANT
