@@ -231,16 +231,19 @@ void add_batch(CLI::App& app, int& code) {
                 "Runs at a time; 1, of those that share a process up to 8 on each GPU: as many as "
                 "fit into memory and have together about 300000 particles")
       ->transform(whole_number(1, 4096));
-  c->add_option("--share", o.share,
-                "Whether runs without pictures share a process, which makes the GPU ready once: "
-                "auto: those on a GPU; yes; no")
-      ->check(CLI::IsMember({"auto", "yes", "no"}));
+  CLI::Option* share =
+      c->add_option(
+           "--share", o.share,
+           "Whether runs without pictures share a process, which makes the GPU ready once: "
+           "auto: those on a GPU; yes; no")
+          ->check(CLI::IsMember({"auto", "yes", "no"}));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
       ->transform(whole_number(1, 4096));
   c->add_option("--max-walltime", o.max_walltime, "Stop all after so many seconds, save, exit 75")
       ->transform(number_from(0, true, "seconds"));
   CLI::Option* only = c->add_option("--only", o.only, "Run this one alone, counted from 0")
-                          ->transform(whole_number(0));
+                          ->transform(whole_number(0))
+                          ->excludes(share);
   c->add_flag("--collect", o.collect, "Run nothing, write the summary of what is there")
       ->excludes(only);
   c->add_flag("--strict", o.strict, "A warning ends its run with exit 6");
