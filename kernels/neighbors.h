@@ -16,7 +16,7 @@ namespace pbf::PBF_VARIANT {
 /// stored one after the other in chunks of 1024 particles.
 struct ChunkedLists {
   static constexpr int chunk_bits = 10;
-  static constexpr bool skip_inactive = true;  ///< a branch per pair pays off for single particles
+  static constexpr bool cheap_branches = true;  ///< for each pair, in sums of single particles
   struct Group {
     std::uint32_t begin, rounds;  ///< first entry within the chunk; length of the longest list
   };

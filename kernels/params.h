@@ -36,7 +36,7 @@ struct Params {
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;
-  Real tensile_from = 0;    ///< of shape/shape(delta_q); less changes no bit (solver/params.h)
+  Real tensile_from = 0;    ///< of shape/shape(delta_q); below, the artificial pressure is 0
   Real xsph = 0;            ///< c, times 1 - carry
   Real vorticity = 0;       ///< 1/s, epsilon
   Real hyperviscosity = 0;  ///< c of HyperviscosityPass, times 1 - carry

@@ -2,6 +2,8 @@
 // 14; artificial pressure eq. 13.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/pair_sum.h"
 #include "kernels/pass_levels.h"
 #include "kernels/pass_predict.h"
@@ -9,10 +11,14 @@
 
 namespace pbf::PBF_VARIANT {
 
+/// The exponent n of the artificial pressure. `fourth`: that of the paper, known when the pair loop
+/// is compiled. A branch for each pair would make a GPU load neighbors one after the other.
+enum class TensilePower { none, fourth, any };
+
 /// x^n for a small positive integer n, by squaring: the same operations on every backend.
-template <class Real>
+template <TensilePower tensile, class Real>
 PBF_HD Real power(Real x, int n) {
-  if (n == 4) {  // the paper's exponent; the loop below gives the same bits with more instructions
+  if (tensile == TensilePower::fourth || n == 4) {  // the bits of the loop
     x = x * x;
     return x * x;
   }
@@ -27,7 +33,7 @@ PBF_HD Real power(Real x, int n) {
 /// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
 /// dx/dt is added to the velocity at once. After the last iteration the velocity equals
 /// (x* - x)/dt, without the cancellation of that difference.
-template <class Real, class Lists, Smoothing S, bool tensile, class Coarse, class Order,
+template <class Real, class Lists, Smoothing S, TensilePower tensile, class Coarse, class Order,
           class Boundary>
 struct DeltaPass {
   Params<Real> p;
@@ -68,17 +74,19 @@ struct DeltaPass {
   template <class V>
   PBF_HD V weight(const Vec4<V>& x, const Vec4<V>& y, V q2, V t) const {
     V w = x.w + y.w;
-    if constexpr (tensile) {
+    if constexpr (tensile != TensilePower::none) {
       V close = density_shape<Real, S>(q2, t) * p.tensile_scale;
-      // Its power is below the smallest normal number, for which processors take 100 cycles more.
-      if constexpr (!is_one<V>) close = choose(close < p.tensile_from, V(0), close);
-      w -= p.tensile_k * power(close, p.tensile_n);
+#ifndef PBF_FAST_DEVICE  // which handles subnormal numbers at no cost
+      close = choose(close < p.tensile_from, V(0), close);
+#endif
+      w -= p.tensile_k * power<tensile>(close, p.tensile_n);
     }
     return w;
   }
   template <class V>
   PBF_HD void add(SumOf<V>& s, const Vec4<V>& x, const Vec4<V>& y) const {
-    if constexpr (!tensile && Lists::skip_inactive && sizeof(V) == sizeof(Real)) {
+    if constexpr (tensile == TensilePower::none && Lists::cheap_branches &&
+                  sizeof(V) == sizeof(Real)) {
       if (x.w + y.w == V(0)) return;  // neither is compressed
     }
     const Vec<V, D> d = point<D>(x) - point<D>(y);
@@ -136,7 +144,8 @@ struct DeltaPass {
     if constexpr (Coarse::on) return all + coarse(i);
     return all;
   }
-  /// Coincident neighbors, and a move into the next substep, are computed one by one.
+  /// Coincident neighbors are computed one by one, and so is a move into the next substep, for
+  /// which the index is an int.
   template <class V>
   PBF_HD bool together(const SumOf<V>& s) const requires(!Coarse::on && !Boundary::books) {
     return !moves_on && holds_everywhere(s.closeness <= coincident());
@@ -153,7 +162,7 @@ struct DeltaPass {
       end.x = boundary.path_end(x, target);
     }
     const Vec3<V> inside = end.x, v = new_velocity(i, move, target, inside - end.still);
-    if constexpr (is_one<V>) {
+    if constexpr (std::is_same_v<Index, int>) {
       if (moves_on) {
         move_on(i, inside, v, p, boundary, position_out, velocity, order, moves_on);
         return;
@@ -170,7 +179,7 @@ struct DeltaPass {
   /// separate loop, so that the pair loop needs no branch.
   PBF_HD Vec3<Real> separate(int i, const Own& own) const {
     Vec3<Real> sum;
-    lists.for_each(i, [&](Neighbor j) {
+    lists.for_each(i, [&](auto j) {
       const Vec4<Real> y = load(position, j);
       const Vec3<Real> d = xyz(own) - xyz(y);
       const Real q2 = dot(d, d);

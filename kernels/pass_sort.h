@@ -54,29 +54,28 @@ struct KnownBinPass {
   PBF_HD void operator()(int) const {}
 };
 
-/// Sorts the rows that stay by bin.
+/// Puts the ids of the rows that stay into their bins, in order of arrival.
 struct PlacePass {
   BinRange bins;
-  const int *bin, *start, *arrival;
-  int* slot;
+  const int *bin, *id, *start, *arrival;
+  int* slot;  ///< out
   PBF_HD void operator()(int i) const {
-    if (const int b = bin[i]; bins.has(b)) slot[start[b] + arrival[i]] = i;
+    if (const int b = bin[i]; bins.has(b)) slot[start[b] + arrival[i]] = id[i];
   }
 };
 /// Moves the rows of a bin to the order of their ids, so that the order of rows follows from the
-/// positions alone: each thread counts the rows of the bin with smaller ids.
+/// positions alone: each thread counts the smaller ids in the bin of its row.
 template <bool leave, class Gather>
 struct OrderPass {
   BinRange bins;
   const int *bin, *id, *start, *slot;
   Gather gather;
-  PBF_HD void operator()(int k) const {
-    if (leave && k >= start[bins.end]) return;
-    const int i = slot[k], b = bin[i];
-    const int mine = id[i], begin = start[b], end = start[b + 1];
-    int place = begin;
-    for (int m = begin; m < end; ++m)
-      if (m != k) place += id[slot[m]] < mine ? 1 : 0;
+  PBF_HD void operator()(int i) const {
+    const int b = bin[i];
+    if (leave && !bins.has(b)) return;
+    const int mine = id[i], end = start[b + 1];
+    int place = start[b];
+    for (int m = place; m < end; ++m) place += slot[m] < mine ? 1 : 0;
     gather(i, place);
   }
 };

@@ -17,6 +17,7 @@
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
 #include "lib/program/time_order.h"
+#include "lib/program/turns.h"
 #include "lib/scene/load.h"
 #include "lib/scene/waves.h"
 
@@ -283,6 +284,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   if (has_levels(s))
     plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol,
                               fluid_layers(s, plan.start.of_files));
+  plan.turns = takes_turns(s, plan);
   plan.memory = plan_memory(s, plan);
   plan_left_out(plan, s);
   plan_files(plan, s);

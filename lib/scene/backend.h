@@ -21,13 +21,13 @@ struct BackendInfo {
   const char* word;
   bool on_device;  ///< arrays are in device memory; otherwise on the host, with `threads`
   bool exact;      ///< always has the bits that every backend has with solver.reproducible
-  int padding;     ///< rows after the last particle: one that pads lists, and those of vector lanes
+  int padding;     ///< rows after the last particle: one that pads lists, and what is read at once
   bool order_in_place;  ///< a sort stores its order where its gather then writes the ids
 };
 /// In the order of the enums.
 inline constexpr PrecisionInfo kPrecisions[] = {{"float", 4, 0x1p-24}, {"double", 8, 0x1p-53}};
 inline constexpr BackendInfo kBackends[] = {{"cpu", false, true, 16, true},
-                                            {"cuda", true, false, 1, false}};
+                                            {"cuda", true, false, 4, false}};
 
 constexpr const PrecisionInfo& about(Precision p) { return kPrecisions[static_cast<int>(p)]; }
 constexpr const BackendInfo& about(Backend b) { return kBackends[static_cast<int>(b)]; }

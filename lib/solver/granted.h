@@ -114,25 +114,5 @@ void StepContext<RealType, Exec, FeatureSet>::as_pass(const auto& launch) {
   else
     granted();
 }
-template <class P, class C>
-void launch_one(C& c) {
-  constexpr bool has_ranks = requires { c.exec.template before<P>(c); };
-  if constexpr (has_ranks)
-    if (!c.exec.template before<P>(c)) return;
-  if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
-  if constexpr (C::Passes::carries_fields && reorders<P>) c.flip_carried();
-  c.template as_pass<P>([](const auto& granted) { P::launch(granted); });
-  if constexpr (C::changes_rows && (how_of<P, field::RowNumber> & kWriting) != 0)
-    c.exec.rows_changed();
-  if constexpr (has_ranks) c.exec.after(c);
-}
-/// Launches pass `index` of a PassList.
-template <class Passes, class C>
-void launch_pass(int index, C& c) {
-  [&]<class... Ps>(PassList<Ps...>) {
-    static constexpr void (*all[])(C&) = {&launch_one<Ps, C>...};
-    all[index](c);
-  }(Passes{});
-}
 
 }  // namespace pbf::PBF_VARIANT

@@ -13,21 +13,10 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// Params::tensile_from, from the other parameters. For x below it, the artificial pressure k x^n
-/// changes no bit of a sum, so lanes omit it (kernels/PERFORMANCE.md):
-/// - k x^n < 2^-127, and a sum of two lambdas is 0 or above 2^-100 (C is 0 or at least 2^-24, and
-///   the divisor is below 2^50 with up to a million neighbors), so it keeps its value;
-/// - where that sum is 0, the term k x^n t^2 rounds to 0, with t^3 <= x/scale.
-/// In double such numbers do not occur.
-template <class Real>
-double least_tensile(const Params<Real>& p) {
-  const double k = p.tensile_k, n = p.tensile_n, scale = p.tensile_scale;
-  const bool small = double(p.cfm) < 0x1p40 && double(p.vol) < 1;
-  if (sizeof(Real) != 4 || !(k > 0) || !small) return 0;
-  const double below_lambda = std::pow(0x1p-127 / k, 1 / n);
-  const double to_zero = std::pow(0x1p-151 * std::pow(scale, 2.0 / 3) / k, 1 / (n + 2.0 / 3));
-  return 0.99 * std::min({below_lambda, to_zero, 0x1p-10});
-}
+/// Params::tensile_from for the exponent n: x^n is below 2^-60, less than the rounding of the
+/// largest artificial pressure. Powers of much smaller x are subnormal numbers, for which
+/// processors need 100 cycles and more. A power of two, which no C library rounds.
+inline double least_tensile(int n) { return std::ldexp(1.0, -((60 + n - 1) / n)); }
 
 template <class Real>
 Params<Real> make_params(const Scene& scene, const Plan& plan) {
@@ -88,7 +77,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
     p.tensile_scale =
         Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
-    p.tensile_from = Real(least_tensile<Real>(p));
+    p.tensile_from = Real(least_tensile(p.tensile_n));
   }
   // Predictions take over a share of viscosities, too, and a share of that share.
   const double now = is_second_order(s) ? 1 - kCarriedPush : 1;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/compression_bins.h"
-#include "lib/solver/granted.h"
+#include "lib/solver/launch.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::PBF_VARIANT {

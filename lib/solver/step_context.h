@@ -141,8 +141,9 @@ struct StepContext {
     return all;
   }
   const char* booked(const char* stage) const { return booked_as ? booked_as : stage; }
+  void take_lists(const Lists& l) { lists = l, lists_are_current = true, iterations = 0; }
   void make_lists() {
-    lists_are_current = true, iterations = 0;
+    take_lists(lists);
     const auto make = [this](const auto& of) {
       lists = exec.build_lists(of, capacity(), position(), data(field::bin_start), p);
     };

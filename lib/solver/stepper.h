@@ -9,7 +9,7 @@
 
 #include "lib/program/plan.h"
 #include "lib/solver/executor.h"
-#include "lib/solver/granted.h"
+#include "lib/solver/launch.h"
 #include "lib/solver/launched_rows.h"
 #include "lib/solver/other_rows.h"
 #include "lib/solver/read_sums.h"
@@ -241,32 +241,32 @@ class Stepper {
     launch_pass<Passes>(pass, c_);
     c_.exec.mark(c_.booked(Passes::texts[std::size_t(pass)].stage));
   }
+  /// Lists and iterations in one launch, where the executor can.
   void run(const Steps& steps) {
-    run(steps, [](int) {});
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      if (!take_turns(c_, steps, k)) run(steps[k], [](int) {});
+  }
+  void run(const ProgramStep& s, const auto& seen) {
+    if (s.kind == ProgramStep::pass) {
+      launch(s.index);
+      seen(s.index);
+    } else if (s.kind == ProgramStep::iterate) {
+      c_.iterating = true;
+      for (int k = 0; k < s.times; ++k) {
+        c_.iteration = s.first + k;
+        ++c_.iterations;
+        run(s.body, seen);
+      }
+      c_.iterating = false;
+    } else {
+      c_.exec.repeat_while("residual", c_.rows(), s.times, ResidualPass<Real>{c_.density()},
+                           plan_.tolerance, &c_.data(field::counts)->repeats,
+                           [&] { run(s.body, seen); });
+    }
   }
   /// Calls seen(pass) after each pass, which may examine its results.
-  template <class Seen>
-  void run(const Steps& steps, const Seen& seen) {
-    for (const ProgramStep& s : steps) switch (s.kind) {
-        case ProgramStep::pass:
-          launch(s.index);
-          seen(s.index);
-          break;
-        case ProgramStep::iterate:
-          c_.iterating = true;
-          for (int k = 0; k < s.times; ++k) {
-            c_.iteration = s.first + k;
-            ++c_.iterations;
-            run(s.body, seen);
-          }
-          c_.iterating = false;
-          break;
-        case ProgramStep::until:
-          c_.exec.repeat_while("residual", c_.rows(), s.times, ResidualPass<Real>{c_.density()},
-                               plan_.tolerance, &c_.data(field::counts)->repeats,
-                               [&] { run(s.body, seen); });
-          break;
-      }
+  void run(const Steps& steps, const auto& seen) {
+    for (const ProgramStep& s : steps) run(s, seen);
   }
 
   /// One update without fused passes, with the bits of step(1). Calls seen(pass, number): number of

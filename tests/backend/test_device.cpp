@@ -50,6 +50,26 @@ TEST_CASE("lists that outgrow their room in the middle of a run grow, and nothin
                    tight->download({"velocity"}, pbf::ScalarType::f32).get()));
 }
 
+TEST_CASE("lists of one thread each grow when words, overflows or their length do not suffice") {
+  NEEDS_DEVICE();
+  Case c = here(jittered_block(35, 35, 35, 0.3, 0.4));  // more than several threads share
+  if (GENERATE(false, true))  // one list with far more entries than the others
+    for (int k = 0; k < 150; ++k) {
+      auto& x = c.particles.position[std::size_t(k)];
+      for (int d = 0; d < 3; ++d) x[d] = c.particles.position[20000][d] + 1e-4 * ((k >> d) % 7);
+    }
+  c.scene.solver.prestabilize = false;
+  const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  const auto after = [&](int entries) {
+    auto solver = pbf::make_cuda_solver(c.scene, plan, c.particles, entries);
+    solver->step(6);
+    return solver->state();
+  };
+  const pbf::SolverState roomy = after(400), tight = after(4), short_of_few = after(32);
+  CHECK(backend_test::same_particles(roomy, tight));
+  CHECK(backend_test::same_particles(roomy, short_of_few));
+}
+
 TEST_CASE("more particles than the device's memory holds are refused before the run") {
   NEEDS_DEVICE();
   Case c = here(jittered_block(4, 4, 4, 0, 0));

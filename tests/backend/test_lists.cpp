@@ -133,3 +133,38 @@ TEST_CASE("few substeps share one list, many make several, one substep none of i
   c.scene.bodies.back().velocity = {1e5, 0, 0};
   CHECK(lists(8) == 8);  // never more than there are substeps
 }
+
+TEST_CASE("lists are those of all pairs, with a clump of 2000 neighbors and rows of every length") {
+  // More particles than several threads of a GPU share, at rest: they are where they start.
+  Case c = here(jittered_block(35, 35, 35, 0.4, 0));
+  c.scene.gravity = {};
+  c.scene.solver.prestabilize = false;
+  const double h = c.scene.h();
+  auto& x = c.particles.position;
+  const pbf::Double3 middle = x[20000];
+  for (std::size_t k = 0; k < 2000; ++k)  // a spiral within 0.45 h
+    for (std::size_t d = 0; d < 3; ++d)
+      x[k][d] = middle[d] + 0.26 * h * std::sin(double(k) * (0.7 + 0.11 * double(d)) + double(d));
+  auto solver = make(c);
+  const pbf::StepTrace trace = solver->inspection()->trace();
+  const auto distance = [&](std::size_t a, std::size_t b) {
+    double sum = 0;
+    for (std::size_t d = 0; d < 3; ++d) sum += (x[a][d] - x[b][d]) * (x[a][d] - x[b][d]);
+    return std::sqrt(sum) / h;
+  };
+  const double edge = is_double() ? 1e-12 : 2e-5;  // h, where rounding decides
+  std::size_t most = 0, wrong = 0;
+  for (std::size_t i = 0; i < x.size(); i += i < 2000 ? 97 : 211) {
+    const auto first = trace.neighbors.begin() + trace.neighbor_begin[i],
+               last = trace.neighbors.begin() + trace.neighbor_begin[i + 1];
+    most = std::max(most, std::size_t(last - first));
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const double q = distance(i, j);
+      const bool listed = std::binary_search(first, last, int(j));
+      wrong += std::abs(q - 1) > edge && listed != (q < 1 && i != j);
+    }
+    wrong += std::adjacent_find(first, last) != last;  // twice
+  }
+  CHECK(wrong == 0);
+  CHECK(most > 2000);
+}

@@ -79,7 +79,7 @@ class EdgeCpu : public CpuExec {
     std::exclusive_scan(begin, end + 1, s.start + s.bins.begin, 0);
     std::fill(begin, end, 0);
     slot_.resize(std::size_t(n));
-    CpuExec::items(n, PlacePass{s.bins, bin, s.start, s.order, slot_.data()});
+    CpuExec::items(n, PlacePass{s.bins, bin, s.id, s.start, s.order, slot_.data()});
     CpuExec::items(n, OrderPass<true, Gather>{s.bins, bin, s.id, s.start, slot_.data(), gather});
   }
 

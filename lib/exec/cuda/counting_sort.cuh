@@ -29,16 +29,20 @@ class CountingSort {
              ListState* lists) {
     scan(s.bins, s.start, launcher.ready());
     launcher.start(place_kernel<Rows>, most(n), kBlock, 0, n,
-                   PlacePass{s.bins, bin, s.start, s.order, slot_.data()}, counts_.data(), lists);
+                   PlacePass{s.bins, bin, s.id, s.start, s.order, slot_.data()}, counts_.data(),
+                   lists);
   }
   /// All of a sort whose passes before this one have given rows their bins, or whose `first` does.
   template <bool leave, class Rows, class First, class Gather>
   void small(Launcher& launcher, const BinSort& s, std::int64_t rows, const Rows& n,
              const First& first, ListState* lists, const Gather& gather) {
-    slot_.resize(std::size_t(rows));
-    launcher.start(small_sort_kernel<leave, Rows, First, Gather>, kSortThreads, kSortThreads,
-                   std::size_t(s.all) * sizeof(int), n, first, s.all, s.order, slot_.data(),
-                   s.start, lists, in_order<leave>(s, first.bin, gather));
+    const auto kernel = &small_sort_kernel<leave, Rows, First, Gather>;
+    const std::size_t shared = (std::size_t(s.all) + 1 + std::size_t(rows)) * sizeof(int);
+    if (shared > kSharedWithoutAsking)
+      PBF_CUDA_CHECK(
+          cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(shared)));
+    launcher.start(kernel, kSortThreads, kSortThreads, shared, n, first, s.all, s.start, lists,
+                   in_order<leave>(s, first.bin, gather));
   }
   template <bool leave, class Gather>
   OrderPass<leave, Gather> in_order(const BinSort& s, const int* bin, const Gather& gather) {

@@ -78,6 +78,7 @@ CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
   driver_ = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
   PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&launcher_.stream, cudaStreamNonBlocking));
   lists_.clear_state(launcher_.stream);
+  turns_.prepare(device, launcher_.stream);
 }
 
 CudaExec::~CudaExec() {

@@ -1,8 +1,9 @@
 // The CUDA executor: one stream; a thread per particle, or several for a neighbor sum where there
-// are few particles.
+// are few particles, and then also all iterations in one kernel.
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "lib/exec/cuda/recorded.cuh"
 #include "lib/exec/cuda/repeat.cuh"
 #include "lib/exec/cuda/shared_pass.cuh"
+#include "lib/exec/cuda/turns.cuh"
 #include "lib/solver/executor.h"
 
 namespace pbf::PBF_VARIANT {
@@ -34,7 +36,6 @@ class CudaExec : public CudaSums {
   CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
-  CudaExec& operator=(const CudaExec&) = delete;
 
   // Stage times of sampled updates, from events on the stream.
   void begin();
@@ -98,13 +99,12 @@ class CudaExec : public CudaSums {
   /// of the whole scene, not from those here.
   template <class Rows, PairPass Pass>
   void pairs(const Rows& n, const Pass& pass) {
-    // In two dimensions a list has a third of the words, enough for half as many threads.
-    constexpr bool space = Pass::D == 3;
-    if (launch_lanes < 16, space ? kSixteenLanes : 0 > (n, pass)) return;
-    if (launch_lanes < space ? 8 : 4, kEightLanes > (n, pass)) return;
-    if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
-    if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
-    launch(pair_kernel<Rows, Pass>, most(n), kBlock, 0, n, pass);
+    with_lanes<Pass::D>(total_, [&](auto lanes) {
+      if constexpr (lanes == 1)
+        launch(pair_kernel<Rows, Pass>, most(n), kBlock, 0, n, pass);
+      else
+        launch(lanes_kernel<lanes, Rows, Pass>, lanes * most(n), kBlock, 0, n, pass);
+    });
   }
   template <SharedPass Pass>
   void shared(int n, const Pass& pass) {
@@ -209,8 +209,23 @@ class CudaExec : public CudaSums {
     return lists_.make(launcher_, n, far, position, bin_start, p);
   }
 
-  /// See CpuExec.
-  void rank(int n, const int* id, int* place);
+#ifndef PBF_PINNED
+  using TurnLists = ChangingLists;  ///< for passes of turns() and turn()
+  Lists prepare_lists(int far) { return lists_.prepare(far); }  ///< those that turns() makes
+  /// See TurnLauncher::all() and one(). Not all in one launch if an update is timed stage by stage.
+  bool turns(const RowRange& rows, bool makes_lists, const int* bin_start, const auto& lambda,
+             const auto& delta, std::span<const float> factors) {
+    const auto* x = lambda.position.rows();
+    const auto lists = lists_.pass<3, false>(lambda.lists.far, x, bin_start, lambda.p);
+    if (profiling_) return false;
+    return turns_.all(launcher_, total_, rows, makes_lists, lists, lambda, delta, factors);
+  }
+  void turn(const RowRange& rows, bool is_lambda, const auto& lambda, const auto& delta) {
+    turns_.one(launcher_, total_, rows, is_lambda, lambda, delta);
+  }
+#endif
+
+  void rank(int n, const int* id, int* place);  ///< see CpuExec
 
   void connect(Communicator& ranks);
   void add_one(unsigned long long* count);
@@ -240,18 +255,6 @@ class CudaExec : public CudaSums {
       pairs(n, pass);
     else
       items(n, pass);
-  }
-  /// Launches `lanes` threads per particle if the scene has at most `largest`; returns whether it
-  /// did.
-  template <int lanes, int largest, class Rows, class Pass>
-  bool launch_lanes(const Rows& n, const Pass& pass) {
-    if constexpr (largest > 0) {
-      if (total_ <= largest) {
-        launch(lanes_kernel<lanes, Rows, Pass>, lanes * most(n), kBlock, 0, n, pass);
-        return true;
-      }
-    }
-    return false;
   }
   /// In turns an update for stage times, in which exchanges are not beside passes, and one for the
   /// time that exchanges take beside passes.
@@ -291,6 +294,7 @@ class CudaExec : public CudaSums {
   std::vector<const char*> stages_;  ///< of the marks since begin()
   CountingSort sort_;
   DeviceBuffer<RepeatState> repeat_;
+  TurnLauncher turns_;
 };
 
 }  // namespace pbf::PBF_VARIANT

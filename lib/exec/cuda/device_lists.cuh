@@ -21,11 +21,30 @@ class DeviceLists {
   template <class Rows, class Real>
   TransposedLists make(Launcher& launcher, const Rows& n, int far, const Vec4<Real>* position,
                        const int* bin_start, const Params<Real>& p) {
-    allocate(far);
+    const TransposedLists lists = prepare(far);
     p.dimensions == 2 ? make_in<2>(launcher, n, far, position, bin_start, p)
                       : make_in<3>(launcher, n, far, position, bin_start, p);
+    return lists;
+  }
+  /// Their memory, for a kernel that makes them with pass().
+  TransposedLists prepare(int far) {
+    allocate(far);
     return {words_.data(),    overflows_.data(), count_.data(),      overflow_of_.data(),
             list_stride(far), capacity_.first,   capacity_.overflow, far};
+  }
+  /// unchanged: as in ListPass.
+  template <int D, bool unchanged = true, class Real>
+  ListPass<Real, D, unchanged> pass(int far, const Vec4<Real>* position, const int* bin_start,
+                                    const Params<Real>& p) {
+    return {{p, position, bin_start},
+            words_.data(),
+            overflows_.data(),
+            count_.data(),
+            overflow_of_.data(),
+            state_.data(),
+            capacity_,
+            list_stride(far),
+            far};
   }
   /// To be called before the next two, which need the stream to be done.
   void ask_state(cudaStream_t stream);
@@ -50,21 +69,11 @@ class DeviceLists {
   template <int D, class Rows, class Real>
   void make_in(Launcher& launcher, const Rows& n, int far, const Vec4<Real>* position,
                const int* bin_start, const Params<Real>& p) {
-    const ListPass<Real, D> pass{p,
-                                 position,
-                                 bin_start,
-                                 words_.data(),
-                                 overflows_.data(),
-                                 count_.data(),
-                                 overflow_of_.data(),
-                                 state_.data(),
-                                 capacity_,
-                                 list_stride(far),
-                                 far};
+    const auto of = pass<D>(far, position, bin_start, p);
     if (far <= kListLanes)
-      launcher.start(list_lanes_kernel<Rows, Real, D>, pass.lanes * most(n), kBlock, 0, n, pass);
+      launcher.start(list_lanes_kernel<Rows, Real, D>, of.lanes * most(n), kBlock, 0, n, of);
     else
-      launcher.start(item_kernel<Rows, ListPass<Real, D>>, most(n), kBlock, 0, n, pass);
+      launcher.start(list_kernel<Rows, Real, D>, most(n), kListBlock, 0, n, of);
   }
   void allocate(int n);
   void use(const ListCapacity& capacity, int n);

@@ -87,16 +87,37 @@ struct Launcher {
   template <class... P, class... A>
   void start(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
     if (threads == 0) return;
+    const auto blocks = unsigned((std::int64_t(threads) + block - 1) / block);
+    start_blocks(kernel, blocks, block, shared, false, args...);
+  }
+  /// Blocks that all run at the same time.
+  template <class... P, class... A>
+  void start_together(void (*kernel)(P...), int blocks, int block, std::size_t shared,
+                      const A&... args) {
+    start_blocks(kernel, unsigned(blocks), block, shared, true, args...);
+  }
+
+ private:
+  template <class... P, class... A>
+  void start_blocks(void (*kernel)(P...), unsigned blocks, int block, std::size_t shared,
+                    bool together, const A&... args) {
     cudaLaunchConfig_t config{};
-    config.gridDim = dim3(unsigned((std::int64_t(threads) + block - 1) / block));
+    config.gridDim = dim3(blocks);
     config.blockDim = dim3(unsigned(block));
     config.dynamicSmemBytes = shared;
     config.stream = ready();
-    cudaLaunchAttribute dependent{};
-    dependent.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-    dependent.val.programmaticStreamSerializationAllowed = 1;
-    config.attrs = &dependent;
-    config.numAttrs = overlap && !alone ? 1 : 0;
+    cudaLaunchAttribute attributes[2]{};
+    config.attrs = attributes;
+    if (overlap && !alone) {
+      cudaLaunchAttribute& dependent = attributes[config.numAttrs++];
+      dependent.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+      dependent.val.programmaticStreamSerializationAllowed = 1;
+    }
+    if (together) {
+      cudaLaunchAttribute& cooperative = attributes[config.numAttrs++];
+      cooperative.id = cudaLaunchAttributeCooperative;
+      cooperative.val.cooperative = 1;
+    }
     alone = false;
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
   }

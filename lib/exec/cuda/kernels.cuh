@@ -4,6 +4,7 @@
 #include <cuda_runtime.h>
 
 #include <cstdint>
+#include <type_traits>
 
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
@@ -19,6 +20,20 @@ constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLan
 constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
 #endif
 constexpr int kListLanes = 40000;
+/// Calls f(threads), an integral_constant: how many share a neighbor sum in a scene of `total`
+/// particles. In two dimensions a list has a third of the words, enough for half as many threads.
+template <int D, class F>
+void with_lanes(std::int64_t total, const F& f) {
+  constexpr bool space = D == 3;
+  if constexpr (space)
+    if (total <= kSixteenLanes) return f(std::integral_constant<int, 16>{});
+  if (total <= kEightLanes) return f(std::integral_constant < int, space ? 8 : 4 > {});
+  if constexpr (kFourLanes > 0)
+    if (total <= kFourLanes) return f(std::integral_constant < int, space ? 4 : 2 > {});
+  if constexpr (space && kTwoLanes > 0)
+    if (total <= kTwoLanes) return f(std::integral_constant<int, 2>{});
+  f(std::integral_constant<int, 1>{});
+}
 constexpr int kRepeatBlocks = 512;
 constexpr int kListedBlocks = 1024;
 
@@ -35,7 +50,7 @@ __global__ void __launch_bounds__(kBlock) pair_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
   wait_for_previous();
   const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
-  if (i < n && !leaves_out(rows, i)) sum_over_neighbors(pass, i);
+  if (i < n && !leaves_out(rows, i)) sum_over_words(pass, i);
 }
 
 /// For items 0 .. *count - 1.
@@ -67,11 +82,25 @@ __global__ void __launch_bounds__(kBlock) lanes_kernel(Rows rows, Pass pass) {
   sum_over_neighbors_by_lanes<lanes>(pass, thread, n);
 #endif
 }
+
+/// One thread makes a list. Large blocks, because adjacent lists have most candidates in common;
+/// two at a time, so that a thread has registers for four candidates.
+constexpr int kListBlock = 512;
+template <class Rows, class Real, int D>
+__global__ void __launch_bounds__(kListBlock, 2) list_kernel(Rows rows, ListPass<Real, D> pass) {
+  __shared__ HitQueue<kListBlock>::Memory memory;
+  const int n = end_of(rows);
+  wait_for_previous();
+  const int i = first_of(rows) + blockIdx.x * kListBlock + threadIdx.x;
+  pass.by_thread(i, i < n && !leaves_out(rows, i), HitQueue<kListBlock>(memory));
+}
 template <class Rows, class Real, int D>
 __global__ void __launch_bounds__(kBlock) list_lanes_kernel(Rows rows, ListPass<Real, D> pass) {
   const int n = end_of(rows);
   wait_for_previous();
-  pass.by_lanes(thread_of_row<ListPass<Real, D>::lanes>(rows, n), n);
+  constexpr int lanes = ListPass<Real, D>::lanes;
+  const int thread = thread_of_row<lanes>(rows, n), i = thread / lanes;
+  pass.by_lanes(i, thread % lanes, i < n);
 }
 
 }  // namespace pbf::PBF_VARIANT

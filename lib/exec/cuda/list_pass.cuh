@@ -1,21 +1,15 @@
-// Making the neighbor lists: exact, without a branch per candidate. The hits of up to 32
-// candidates are collected as bits, then taken out in order.
+// Making the neighbor lists, with one or several threads for each.
 #pragma once
 
+#include <climits>
 #include <cub/util_ptx.cuh>
 #include <cub/warp/warp_scan.cuh>
 
+#include "lib/exec/cuda/hit_queue.cuh"
+#include "lib/exec/cuda/list_search.cuh"
 #include "lib/exec/cuda/transposed_lists.cuh"
 
 namespace pbf::PBF_VARIANT {
-
-/// Shifts `mask` left by one place and puts the sign bit of x into its lowest bit.
-__device__ __forceinline__ unsigned push_sign(float x, unsigned mask) {
-  return __funnelshift_l(__float_as_uint(x), mask, 1);
-}
-__device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
-  return __funnelshift_l(unsigned(__double2hiint(x)), mask, 1);
-}
 
 /// What the making of lists reports to the host; on the device.
 struct ListState {
@@ -24,14 +18,20 @@ struct ListState {
   int longest;  ///< longest list that did not fit, or nearly not, in any update
 };
 
-/// D: dimensions of the scene.
-template <class Real, int D>
-struct ListPass {
-  static constexpr int rows = D == 2 ? 3 : 9;   ///< of cells around a cell
+/// A list for the threads that have made it.
+struct MadeList {
+  int count;             ///< of its entries
+  const int4* overflow;  ///< null if it has none
+};
+
+/// D, unchanged: see ListSearch.
+template <class Real, int D, bool unchanged = true>
+struct ListPass : ListSearch<Real, D, unchanged> {
+  using Search = ListSearch<Real, D, unchanged>;
+  using Search::at, Search::beyond, Search::hits, Search::p, Search::position, Search::row_of,
+      Search::rows, Search::scan;
+  using Row = typename Search::Row;
   static constexpr int lanes = D == 2 ? 2 : 8;  ///< threads of by_lanes() for one list
-  Params<Real> p;
-  const Vec4<Real>* position;
-  const int* bin_start;
   int4 *words, *overflows;
   int *count, *overflow_of;
   ListState* state;
@@ -39,96 +39,152 @@ struct ListPass {
   int stride;
   int far;  ///< the row that pads lists
 
-  /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbor of i.
-  template <class F>
-  __device__ __forceinline__ void scan(int i, Vec<Real, D> xi, int begin, int end, F&& hits) const {
-    for (int first = begin; first < end; first += 32) {
-      const int n = min(32, end - first);
-      unsigned bits = 0;
-#pragma unroll 4
-      for (int k = 0; k < n; ++k) {
-        const Vec<Real, D> d = xi - point<D>(load(position, first + k));
-        bits = push_sign(dot(d, d) - Real(1), bits);
+  /// One thread makes the list of particle i. All threads of a warp take part; valid: i is a
+  /// particle.
+  template <int block>
+  __device__ __forceinline__ void by_thread(int i, bool valid, HitQueue<block> queue) const {
+    const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
+    const GridCell c = cell_of<D>(in_space(xi), p);
+    int4* out = words + i;
+    std::size_t step = std::size_t(stride);
+    int written = 0, limit = capacity.first, room = limit;
+    const auto write = [&](const int4& word) {
+      if (written == room) more_memory(i, out, step, room, limit);
+      *out = word;
+      out += step;
+      ++written;
+    };
+    int r = 0;
+    Row row = row_of(c, valid ? r : rows);
+    while (true) {
+      while (!__any_sync(kWarp, row.begin < row.end) && ++r < rows)
+        row = row_of(c, valid ? r : rows);
+      const bool done = r == rows;
+      if (!done) {
+        const int n = max(min(32, row.end - row.begin), 0);
+        const unsigned bits = hits(i, xi, row.begin, n);
+        if (bits) queue.push(row.begin, bits);
+        row.begin += 32;
       }
-      bits <<= 32 - n;  // the first candidate at bit 31
-      if (unsigned(i - first) < unsigned(n)) bits &= ~(0x80000000u >> (i - first));
-      hits(first, bits);
+      if (!done && !__any_sync(kWarp, queue.full())) continue;
+      const int padded = queue.take_words(done, far, write);
+      if (!done) continue;
+      if (valid) finish(i, 4 * written - padded, limit);
+      return;
     }
   }
 
-  /// One thread makes the list of particle i, packing four entries in registers for each write.
-  __device__ void operator()(int i) const {
-    const Vec<Real, D> xi = point<D>(position[i]);
-    int4* out = words + i;
-    std::size_t step = std::size_t(stride);
-    int4 word{0, 0, 0, 0};
-    int found = 0, limit = capacity.first + capacity.overflow;
-    const auto put = [&](int j) {
-      word = {word.y, word.z, word.w, j};
-      if (++found & 3) return;
-      const int k = (found >> 2) - 1;
-      if (k == capacity.first) {
-        out = take_overflow(i);
-        step = 1;
-        if (!out) limit = k;
-      }
-      if (k >= limit) return;
-      *out = word;
-      out += step;
-    };
-    for_each_run<D>(in_space(xi), bin_start, p, [&](int begin, int end) {
-      scan(i, xi, begin, end, [&](int first, unsigned bits) {
-        while (bits) {
-          const int k = __clz(int(bits));
-          bits &= ~(0x80000000u >> k);
-          put(first + k);
-        }
-      });
-    });
-    const int all = found;
-    while (found & 3) put(far);  // the far particle
-    finish(i, all, limit);
-  }
-
-  /// For few particles: eight threads make a list (two in two dimensions). Each has a row of
-  /// candidates (the last one two rows), which it first counts, then writes in order.
-  __device__ void by_lanes(int thread, int n) const {
-    const int i = thread / lanes, lane = thread % lanes;
-    const bool valid = i < n;
-    const bool last = lane == lanes - 1;
+  /// For few particles: several threads make a list. Each has a few rows of candidates, which it
+  /// first counts, then writes in order. All threads of a warp take part; valid: i is a particle.
+  template <int of_list = lanes>
+  __device__ MadeList by_lanes(int i, int lane, bool valid) const {
+    constexpr int most = (rows + of_list - 1) / of_list;
+    const bool last = lane == of_list - 1;
     const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
     const GridCell c = cell_of<D>(in_space(xi), p);
-    Row a = row_of(c, valid ? lane : rows), b = row_of(c, valid && last ? lanes : rows);
-    count_row(i, xi, a);
-    count_row(i, xi, b);
-    const int mine = a.found + b.found;
-    using LaneScan = cub::WarpScan<int, lanes>;
+    const int first = lane * rows / of_list, end = (lane + 1) * rows / of_list;
+    Row row[most];
+    int mine = 0;
+#pragma unroll
+    for (int r = 0; r < most; ++r) {
+      row[r] = row_of(c, valid && first + r < end ? first + r : rows);
+      count_row(i, xi, row[r]);
+      mine += row[r].found;
+    }
+    using LaneScan = cub::WarpScan<int, of_list>;
     __shared__ typename LaneScan::TempStorage shared;  // empty: the scan uses shuffles
     int place, all;
     LaneScan(shared).ExclusiveSum(mine, place, all);
     int4* overflow = nullptr;
     if (last && all > 4 * capacity.first) overflow = take_overflow(i);
-    overflow = cub::ShuffleIndex<lanes>(overflow, lanes - 1, 0xffffffffu);
+    overflow = cub::ShuffleIndex<of_list>(overflow, of_list - 1, kWarp);
     const List list{words + i, overflow};
-    place = write_row(i, xi, a, place, list);
-    write_row(i, xi, b, place, list);
-    if (!valid || !last) return;
-    for (int at = all; at & 3; ++at) put(list, at, far);
-    finish(i, all, capacity.first + (overflow ? capacity.overflow : 0));
+#pragma unroll
+    for (int r = 0; r < most; ++r) place = write_row(i, xi, row[r], place, list);
+    const int limit = capacity.first + (overflow ? capacity.overflow : 0);
+    if (valid && last) {
+      for (int k = all; k & 3; ++k) put(list, k, far);
+      finish(i, all, limit);
+    }
+    return {min(all, 4 * limit), overflow};
+  }
+
+  static constexpr int staged = 64;  ///< entries of a list in shared memory
+
+  /// The same for threads that go on with the list: its first entries are also left in `stage`,
+  /// shared memory of these threads. Each tests every `of_list`-th candidate of all rows at once.
+  template <int of_list>
+  __device__ MadeList by_group(int i, int lane, bool valid, int* stage) const {
+    const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
+    const GridCell c = cell_of<D>(in_space(xi), p);
+    int begin[rows], end[rows], longest = 0;
+    unsigned hits[rows] = {};
+#pragma unroll
+    for (int r = 0; r < rows; ++r) {
+      const Row row = row_of(c, valid ? r : rows);
+      begin[r] = row.begin + lane, end[r] = row.end;
+      longest = max(longest, row.end - row.begin);
+    }
+    const int rounds = (largest_of_warp(longest) + of_list - 1) / of_list;
+    for (int k = 0; k < min(rounds, 32); ++k) {
+#pragma unroll
+      for (int r = 0; r < rows; ++r) {
+        const int j = begin[r] + k * of_list;
+        const Vec4<Real> x = at(position + (j < end[r] ? j : far));
+        const bool hit = beyond(xi - point<D>(x)) < Real(0) && j != i;
+        hits[r] |= unsigned(hit) << k;
+      }
+    }
+    const int group = threadIdx.x % 32 / of_list * of_list;
+    int all = 0;
+#pragma unroll
+    for (int r = 0; r < rows; ++r)
+      for (int k = 0; k < min(rounds, 32); ++k) {
+        const bool hit = hits[r] >> k & 1;
+        const unsigned found = (__ballot_sync(kWarp, hit) >> group) & ((1u << of_list) - 1);
+        const int place = all + __popc(found & ((1u << lane) - 1));
+        if (hit && place < staged) stage[place] = begin[r] + k * of_list;
+        all += __popc(found);
+      }
+    if (__any_sync(kWarp, all > staged || rounds > 32))
+      return by_few<of_list>(i, lane, valid, stage);
+    if (lane < (-all & 3)) stage[all + lane] = far;
+    int4* overflow = nullptr;
+    if (lane == 0 && all > 4 * capacity.first) overflow = take_overflow(i);
+    overflow = cub::ShuffleIndex<of_list>(overflow, 0, kWarp);
+    __syncwarp();
+    const int limit = capacity.first + (overflow ? capacity.overflow : 0);
+    for (int k = lane; k < min((all + 3) >> 2, limit); k += of_list)
+      *(k < capacity.first ? words + i + std::size_t(k) * stride
+                           : overflow + (k - capacity.first)) = reinterpret_cast<int4*>(stage)[k];
+    if (valid && lane == 0) finish(i, all, limit);
+    return {min(all, 4 * limit), overflow};
   }
 
  private:
-  /// A row around a cell, in the order of for_each_run(), and its hits if they fit into a word.
-  struct Row {
-    int begin = 0, end = 0, found = 0;
-    unsigned bits = 0;
-  };
-  __device__ __forceinline__ Row row_of(GridCell c, int r) const {
-    const int y = D == 2 ? 0 : c.y + r % 3 - 1, z = c.z + (D == 2 ? r : r / 3) - 1;
-    if (r >= rows || y < 0 || z < 0 || y >= p.cells_y || z >= p.cells_z) return {};
-    const int row = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;
-    return {bin_start[(row + max(c.x - 2, 0)) * bins_per_cell(D)],
-            bin_start[(row + min(c.x + 2, p.cells_x - 1) + 1) * bins_per_cell(D)]};
+  /// by_lanes(), and the first entries in shared memory: for long lists.
+  template <int of_list>
+  __device__ MadeList by_few(int i, int lane, bool valid, int* stage) const {
+    const MadeList list = by_lanes<of_list>(i, lane, valid);
+    __syncwarp();
+    for (int e = lane; e < min(list.count, staged); e += of_list) {
+      const int k = e >> 2;
+      const int4* word = k < capacity.first ? words + i + std::size_t(k) * stride
+                                            : list.overflow + (k - capacity.first);
+      stage[e] = reinterpret_cast<const int*>(word)[e & 3];
+    }
+    return list;
+  }
+  /// For a word behind the first `room`, which is all that there was memory for. limit: words of
+  /// the list. If there is no more memory, its next words overwrite the first one: the batch is
+  /// repeated with more.
+  __device__ __forceinline__ void more_memory(int i, int4*& out, std::size_t& step, int& room,
+                                              int& limit) const {
+    int4* block = limit == capacity.first ? take_overflow(i) : nullptr;
+    limit += block ? capacity.overflow : 0;
+    room = block ? limit : INT_MAX;
+    out = block ? block : words + i;
+    step = block ? 1 : 0;
   }
   __device__ __forceinline__ void count_row(int i, Vec<Real, D> xi, Row& r) const {
     scan(i, xi, r.begin, r.end, [&](int, unsigned bits) {

@@ -7,6 +7,10 @@
 
 namespace pbf::PBF_VARIANT {
 
+/// Bytes of shared memory in a block beside 128 of a kernel's own.
+constexpr std::size_t kSharedWithoutAsking = 48 * 1024 - 128;
+static_assert((kSortBins + 1 + kSortParticles) * sizeof(int) <= 60 * 1024);
+
 /// Also clears the counts for the next sort, and the number of used overflows.
 template <class Rows>
 __global__ void __launch_bounds__(kBlock)
@@ -19,27 +23,35 @@ __global__ void __launch_bounds__(kBlock)
   if (i == 0) lists->used = 0;
 }
 
-static_assert((kSortBins + 1 + 32) * sizeof(int) <= 48 * 1024, "count and warp_sum in one block");
-
 /// One block runs `first`, which gives rows their bins, sorts and gathers. For few particles
-/// (kSortParticles, kSortBins). leave: rows with a negative id leave.
+/// (kSortParticles, kSortBins), whose bins and ids stay in registers and shared memory. leave: rows
+/// with a negative id leave.
 template <bool leave, class Rows, class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
-    small_sort_kernel(Rows rows, First first_pass, int bins, int* arrival, int* slot, int* start,
-                      ListState* lists, OrderPass<leave, Gather> place) {
+    small_sort_kernel(Rows rows, First first_pass, int bins, int* start, ListState* lists,
+                      OrderPass<leave, Gather> order) {
   const int n = end_of(rows);
   wait_for_previous();
-  extern __shared__ int count[];  // of each bin
+  extern __shared__ int count[];  // of each bin, and then its first row
+  int* const slot = count + bins + 1;
   __shared__ int warp_sum[32];
   const int t = threadIdx.x;
-  const int* bin = place.bin;
+  constexpr int most = (kSortParticles + kSortThreads - 1) / kSortThreads;
+  int bin[most], id[most], arrival[most];
+#pragma unroll
+  for (int r = 0; r < most; ++r) {
+    const int i = t + r * kSortThreads;
+    bin[r] = -1;
+    if (i >= n) continue;
+    first_pass(i);
+    id[r] = order.id[i];
+    if (!leave || id[r] >= 0) bin[r] = order.bin[i];
+  }
   for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
   __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) {
-    first_pass(i);
-    if (leave && place.id[i] < 0) continue;
-    arrival[i] = atomicAdd(&count[bin[i]], 1);
-  }
+#pragma unroll
+  for (int r = 0; r < most; ++r)
+    if (bin[r] >= 0) arrival[r] = atomicAdd(&count[bin[r]], 1);
   __syncthreads();
   // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the sums
   // of threads within warps, then those of warps. cub::BlockScan is slower here
@@ -72,12 +84,20 @@ __global__ void __launch_bounds__(kSortThreads)
     before += mine;
   }
   if (t == 0) lists->used = 0;
-  if (t == kSortThreads - 1) start[bins] = before;  // of the rows that stay
+  if (t == kSortThreads - 1) count[bins] = start[bins] = before;  // of the rows that stay
   __syncthreads();
-  for (int i = t; i < n; i += kSortThreads)
-    if (!leave || place.id[i] >= 0) slot[count[bin[i]] + arrival[i]] = i;
+#pragma unroll
+  for (int r = 0; r < most; ++r)
+    if (bin[r] >= 0) slot[count[bin[r]] + arrival[r]] = id[r];
   __syncthreads();
-  for (int k = t; k < n; k += kSortThreads) place(k);
+#pragma unroll
+  for (int r = 0; r < most; ++r) {
+    if (bin[r] < 0) continue;
+    const int end = count[bin[r] + 1];
+    int place = count[bin[r]];
+    for (int m = place; m < end; ++m) place += slot[m] < id[r] ? 1 : 0;
+    order.gather(t + r * kSortThreads, place);
+  }
 }
 
 }  // namespace pbf::PBF_VARIANT

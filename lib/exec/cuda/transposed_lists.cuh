@@ -20,10 +20,20 @@ __device__ __forceinline__ int4 load_once(const int4* word) {
   return w;
 }
 
+/// The largest n of the threads of a warp.
+__device__ __forceinline__ int largest_of_warp(int n) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(0xffffffffu, n);
+#else
+  for (int half = 16; half > 0; half /= 2) n = max(n, __shfl_xor_sync(0xffffffffu, n, half));
+  return n;
+#endif
+}
+
 /// Neighbor lists of the GPU. Unused entries of the last word are the far particle (index n), which
 /// contributes zero to every sum, so entries need no test.
 struct TransposedLists {
-  static constexpr bool skip_inactive = false;  ///< a branch per pair costs more than the pair
+  static constexpr bool cheap_branches = false;  ///< one per pair costs more than the pair
   const int4 *words = nullptr, *overflows = nullptr;
   const int* count = nullptr;        ///< neighbors stored for each particle
   const int* overflow_of = nullptr;  ///< number of its overflow, if count is above 4 first
@@ -49,6 +59,25 @@ struct TransposedLists {
       f(Neighbor{j.w});
     }
   }
+  /// f(word) for every word of i, or for the share of one of `lanes` threads. Each is loaded while
+  /// the neighbors in the one before are added.
+  template <class F>
+  __device__ __forceinline__ void for_each_word(int i, F&& f, int lane = 0, int lanes = 1) const {
+    const int n = (count[i] + 3) >> 2, inner = min(n, first);
+    const int4* w = words + i + std::size_t(lane) * stride;
+    int k = lane;
+    int4 next;
+    if (k < inner) next = load_once(w);
+    for (; k < inner; k += lanes) {
+      const int4 now = next;
+      w += std::size_t(lanes) * stride;
+      if (k + lanes < inner) next = load_once(w);
+      f(now);
+    }
+    if (k >= n) return;
+    w = overflows + std::size_t(overflow_of[i]) * overflow + (k - first);
+    for (; k < n; k += lanes, w += lanes) f(load_once(w));
+  }
   /// Word k of particle i.
   __device__ __forceinline__ int4 word(int i, int k) const {
     return load_once(k < first ? words + i + std::size_t(k) * stride
@@ -56,6 +85,27 @@ struct TransposedLists {
   }
   __device__ __forceinline__ int size(int i) const { return count[i]; }
 };
+
+/// Adds the neighbors in a word. All four are loaded before the first is added.
+template <class Index = Neighbor, class Pass, class Own, class Sum>
+__device__ __forceinline__ void add_word(const Pass& pass, Sum& sum, const Own& own,
+                                         const int4& word) {
+  const auto a = pass.other(Index{word.x}), b = pass.other(Index{word.y}),
+             c = pass.other(Index{word.z}), d = pass.other(Index{word.w});
+  pass.add(sum, own, a);
+  pass.add(sum, own, b);
+  pass.add(sum, own, c);
+  pass.add(sum, own, d);
+}
+
+/// sum_over_neighbors() of one thread (kernels/pair_sum.h), with the same bits.
+template <class Pass>
+__device__ __forceinline__ void sum_over_words(const Pass& pass, int i) {
+  const auto own = pass.own(i);
+  typename Pass::Sum sum{};
+  pass.lists.for_each_word(i, [&](const int4& word) { add_word(pass, sum, own, word); });
+  pass.finish(i, own, sum);
+}
 
 /// Several threads share the neighbors of one particle: for few particles, where a pass waits for
 /// memory rather than for arithmetic. Their sums are added in a tree of fixed shape.
@@ -67,8 +117,8 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
   typename Pass::Sum sum{};
   if (valid) {
     own = pass.own(i);
-    pass.lists.for_each(
-        i, [&](Neighbor j) { pass.add(sum, own, pass.other(j)); }, lane, lanes);
+    pass.lists.for_each_word(
+        i, [&](const int4& word) { add_word(pass, sum, own, word); }, lane, lanes);
   }
   sum.each([](auto& x) {
 #pragma unroll

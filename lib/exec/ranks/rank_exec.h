@@ -143,6 +143,9 @@ class RankExec : public Base {
     }
     return Base::template sort_by_bin<false>(stage, of, near, n, bins, id, order, start, gather);
   }
+  void turn(const Rows& rows, const auto&... of) {
+    over(rows, [&](const RowRange& r) { Base::turn(r, of...); });
+  }
   using Base::build_lists;
   template <class Real>
   Lists build_lists(const Rows& rows, int far, const Vec4<Real>* position, const int* bin_start,

@@ -32,22 +32,25 @@ using LambdaNeeds =
           If<is_second_order, Reads<field::velocity>>, NearNeeds, NearSumNeeds, ShareNeeds,
           Writes<other<field::position>, W::lambda>, Adds<field::counts>>;
 
+template <Smoothing S, bool with_density, class G, class Lists, class Order, class Boundary>
+auto lambda_pass(const G& c, const Lists& lists, const Order&, const Boundary& boundary) {
+  return LambdaPass<typename G::Real, Lists, S, with_density, Order, Boundary>{
+      c.p,
+      boundary,
+      lists,
+      c[field::position],
+      c[other<field::position>],
+      c[field::density],
+      c[field::velocity],
+      c[field::counts].sums()};
+}
 template <bool with_density, class G>
 void launch_lambda(const G& c) {
-  using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    with_order<decltype(s)::value, Real>(c.scene, nullptr, {}, [&](auto order) {
+    constexpr Smoothing S = decltype(s)::value;
+    with_order<S, typename G::Real>(c.scene, nullptr, {}, [&](const auto& order) {
       each_then_near<false>(c, [&](const auto& boundary) {
-        return LambdaPass<Real, typename G::Lists, decltype(s)::value, with_density,
-                          decltype(order), std::decay_t<decltype(boundary)>>{
-            c.p,
-            boundary,
-            c.lists(),
-            c[field::position],
-            c[other<field::position>],
-            c[field::density],
-            c[field::velocity],
-            c[field::counts].sums()};
+        return lambda_pass<S, with_density>(c, c.lists(), order, boundary);
       });
     });
   });

@@ -2,40 +2,58 @@
 // by the levels.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/pass_delta.h"
 #include "lib/program/features/levels.h"
 #include "lib/program/features/motion.h"
 
 namespace pbf::PBF_VARIANT {
 
-/// density: of the pass that leaves 1/density; null with moves_on. free: with moves_on in second
-/// order.
+/// density: of the pass that leaves 1/density; null with moves_on.
+template <Smoothing S, TensilePower tensile, class G, class Lists, class Coarse, class Order,
+          class Boundary>
+auto delta_pass(const G& c, const Lists& lists, OwnRows<const typename G::Real> density,
+                StepCounts* moves_on, const Coarse& coarse, const Order& order,
+                const Boundary& boundary) {
+  auto p = c.p;
+  p.sor = c.sor();
+  return DeltaPass<typename G::Real, Lists, S, tensile, Coarse, Order, Boundary>{
+      p,
+      boundary,
+      lists,
+      c[other<field::position>],
+      density,
+      c[field::id],
+      c[field::position],
+      c[field::velocity],
+      moves_on,
+      coarse,
+      order};
+}
+inline bool has_tensile(const Scene& s) { return s.tensile && s.tensile->k != 0; }
+/// Lists: of the passes.
+template <class Lists, class F>
+void with_tensile(const Scene& s, F&& f) {
+  if (!has_tensile(s)) return f(std::integral_constant<TensilePower, TensilePower::none>{});
+  if constexpr (!Lists::cheap_branches)
+    if (s.tensile->n == 4) return f(std::integral_constant<TensilePower, TensilePower::fourth>{});
+  f(std::integral_constant<TensilePower, TensilePower::any>{});
+}
+
+/// free: with moves_on in second order.
 template <class G>
 void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<typename G::Real>* free,
                   StepCounts* moves_on) {
-  using Real = typename G::Real;
-  auto p = c.p;
-  p.sor = c.sor();
   c.with_smoothing([&](auto s) {
     constexpr Smoothing S = decltype(s)::value;
-    with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
+    with_tensile<typename G::Lists>(c.scene, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
         const DissipationBook damping = moves_on ? damping_book(c) : DissipationBook{};
-        with_order<S, Real>(c.scene, free, damping, [&](const auto& order) {
+        with_order<S, typename G::Real>(c.scene, free, damping, [&](const auto& order) {
           each_then_near<true>(c, [&](const auto& boundary) {
-            return DeltaPass<Real, typename G::Lists, S, decltype(tensile)::value,
-                             std::decay_t<decltype(coarse)>, std::decay_t<decltype(order)>,
-                             std::decay_t<decltype(boundary)>>{p,
-                                                               boundary,
-                                                               c.lists(),
-                                                               c[other<field::position>],
-                                                               density,
-                                                               c[field::id],
-                                                               c[field::position],
-                                                               c[field::velocity],
-                                                               moves_on,
-                                                               coarse,
-                                                               order};
+            return delta_pass<S, decltype(tensile)::value>(c, c.lists(), density, moves_on, coarse,
+                                                           order, boundary);
           });
         });
       });
@@ -83,8 +101,7 @@ struct Correction {
   static void add(const Scene& s, auto& b) {
     if (s.solver.iterations == 0) return;
     b.iteration(Delta());
-    if (!s.tensile || s.tensile->k == 0)
-      b.left_out("artificial pressure in the delta loop", "no key tensile");
+    if (!has_tensile(s)) b.left_out("artificial pressure in the delta loop", "no key tensile");
   }
 };
 

@@ -226,18 +226,18 @@ void check_passes(int variant) {
   });
   for (const bool goes_on : {false, true})
     check_finish<Real>(p, [&](Rows& a) {
-      return DeltaPass<Real, ChunkedLists, S, true, NoLevelMove<Real>, Order, Box<Real>>{
-          p,
-          p.boundary,
-          lists,
-          In(a.position.data()),
-          OwnRows<const Real>(a.density.data()),
-          GatheredRows<int>(a.id.data()),
-          Out(a.out.data()),
-          Out(a.velocity.data()),
-          goes_on ? &a.counts : nullptr,
-          {},
-          order(a)};
+      return DeltaPass<Real, ChunkedLists, S, TensilePower::fourth, NoLevelMove<Real>, Order,
+                       Box<Real>>{p,
+                                  p.boundary,
+                                  lists,
+                                  In(a.position.data()),
+                                  OwnRows<const Real>(a.density.data()),
+                                  GatheredRows<int>(a.id.data()),
+                                  Out(a.out.data()),
+                                  Out(a.velocity.data()),
+                                  goes_on ? &a.counts : nullptr,
+                                  {},
+                                  order(a)};
     });
   check_finish<Real>(p, [&](Rows& a) {
     return XsphPass<Real, ChunkedLists, S, Order, Box<Real>>{

@@ -127,6 +127,14 @@ TEST_CASE("a rank on a device has memory for its share of the particles, not for
   CHECK(double(part.memory.device_arrays) < 0.45 * double(m.plan.memory.device_arrays));
 }
 
+TEST_CASE("a rank adds in the order of one process: both take turns, or neither") {
+  for (const char* precision : {"float", "double"}) {
+    const RankScene m("configs/minimal", {"backend=cuda", std::string("precision=") + precision});
+    CHECK(m.plan.turns == (precision == std::string("float")));
+    CHECK(plan_of_rank(m.plan, scene_of_rank(m.plan, m.scene, 2)).turns == m.plan.turns);
+  }
+}
+
 TEST_CASE("a scene with periodic axes is refused on several ranks by its key") {
   const RankScene m("configs/minimal", {"domain.periodic=[x]"});
   CHECK_THROWS_WITH(

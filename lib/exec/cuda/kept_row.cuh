@@ -1,0 +1,143 @@
+// What a kernel that runs passes in turns (turns.cuh) gives them: the row of a thread's particle
+// and the entries of its list in registers, and rows of neighbors that other threads of the kernel
+// write.
+#pragma once
+
+#include <type_traits>
+
+#include "kernels/vec3.h"
+#include "lib/exec/cuda/transposed_lists.cuh"
+
+namespace pbf::PBF_VARIANT {
+
+/// A neighbor whose row the kernel writes between barriers: never loaded through the read-only
+/// path.
+struct ChangingNeighbor : Neighbor {};
+__device__ __forceinline__ Vec4<float> load(GatheredRows<Vec4<float>> a, ChangingNeighbor j) {
+  return a.rows()[j.row];
+}
+
+/// TransposedLists that the kernel itself may have made.
+struct ChangingLists : TransposedLists {
+  template <class F>
+  __device__ __forceinline__ void for_each(int i, F&& f) const {
+    const int4* o = overflow_words(i, count[i]);
+    for (int e = 0; e < count[i]; ++e) f(ChangingNeighbor{{entry(i, e, o)}});
+  }
+  /// Null if a list of n entries has none.
+  __device__ __forceinline__ const int4* overflow_words(int i, int n) const {
+    return n > 4 * first ? overflows + std::size_t(overflow_of[i]) * overflow : nullptr;
+  }
+  /// o: overflow_words(i).
+  __device__ __forceinline__ int entry(int i, int e, const int4* o) const {
+    const int k = e >> 2;
+    const int4* word = k < first ? words + i + std::size_t(k) * stride : o + (k - first);
+    return reinterpret_cast<const int*>(word)[e & 3];
+  }
+};
+
+/// What LambdaPass and DeltaPass read and write of their own particle. Positions are stored at
+/// once, for other threads; the rest, which only later kernels read, by store().
+struct KeptRow {
+  int i;
+  const Vec4<float>*position_rows, *velocity_rows;
+  Vec4<float> position, direction, velocity;  ///< direction: LambdaPass::position_out
+  float density;
+
+  __device__ __forceinline__ Vec4<float> of(const Vec4<float>* rows) const {
+    if (rows == velocity_rows) return velocity;
+    return rows == position_rows ? position : direction;
+  }
+  __device__ __forceinline__ void set(Vec4<float>* rows, const Vec4<float>& value) {
+    if (rows == velocity_rows) {
+      velocity = value;
+      return;
+    }
+    rows[i] = value;
+    if (rows == position_rows)
+      position = value;
+    else
+      direction = value;
+  }
+};
+
+/// The index of that row, as passes take it (kernels/rows.h).
+struct Kept {
+  KeptRow* row;
+  PBF_HD operator int() const { return row->i; }
+};
+__device__ __forceinline__ Vec4<float> load(GatheredRows<Vec4<float>> a, Kept k) {
+  return k.row->of(a.rows());
+}
+__device__ __forceinline__ Vec4<float> row(OwnRows<Vec4<float>> a, Kept k) {
+  return k.row->of(a.rows());
+}
+__device__ __forceinline__ void set_row(OwnRows<Vec4<float>> a, Kept k, const Vec4<float>& value) {
+  k.row->set(a.rows(), value);
+}
+__device__ __forceinline__ float row(OwnRows<const float>, Kept k) { return k.row->density; }
+__device__ __forceinline__ void set_row(OwnRows<float>, Kept k, float value) {
+  k.row->density = value;
+}
+
+/// The entries of a list that one of `lanes` threads sums over: lane, lane + lanes, ... All threads
+/// of a warp take part.
+template <int lanes>
+class KeptEntries {
+ public:
+  /// n: entries of the list of particle i; 0 for none. stage: null, or the first ones.
+  __device__ __forceinline__ KeptEntries(const ChangingLists& lists, int i, int lane, int n,
+                                         const int4* overflow, const int* stage)
+      : lists_(lists), i_(i), lane_(lane), n_(n), overflow_(overflow) {
+    rounds_ = largest_of_warp((n + lanes - 1) / lanes);
+#pragma unroll
+    for (int k = 0; k < kKept; ++k) {
+      const int e = lane + k * lanes;
+      entry_[k] = e >= n ? lists.far : stage ? stage[e] : lists.entry(i, e, overflow);
+    }
+  }
+  /// Adds all of them to a sum of a pass. The usual numbers of rows are loaded at once.
+  template <class Pass, class Own, class Sum>
+  __device__ __forceinline__ void add_to(const Pass& pass, const Own& own, Sum& sum) const {
+    constexpr int least = lanes == 16 ? 2 : 4;
+    if (rounds_ <= least)
+      add<0, least>(pass, own, sum);
+    else if (rounds_ == least + 1)
+      add<0, least + 1>(pass, own, sum);
+    else
+      add<0, least + 2>(pass, own, sum);
+    add_twos<least + 2>(pass, own, sum);
+    for (int k = kKept; k < rounds_; ++k) {
+      const int e = lane_ + k * lanes;
+      const int j = e < n_ ? lists_.entry(i_, e, overflow_) : lists_.far;
+      pass.add(sum, own, pass.other(ChangingNeighbor{{j}}));
+    }
+  }
+
+ private:
+  static constexpr int kKept = 64 / lanes;
+  /// n entries from k on. All rows are asked for before the first is used.
+  template <int k, int n, class Pass, class Own, class Sum>
+  __device__ __forceinline__ void add(const Pass& pass, const Own& own, Sum& sum) const {
+    decltype(pass.other(ChangingNeighbor{{0}})) other[n];
+#pragma unroll
+    for (int j = 0; j < n; ++j) other[j] = pass.other(ChangingNeighbor{{entry_[k + j]}});
+#pragma unroll
+    for (int j = 0; j < n; ++j) pass.add(sum, own, other[j]);
+  }
+  template <int k, class Pass, class Own, class Sum>
+  __device__ __forceinline__ void add_twos(const Pass& pass, const Own& own, Sum& sum) const {
+    if constexpr (k < kKept) {
+      if (k >= rounds_) return;
+      add<k, 2>(pass, own, sum);
+      add_twos<k + 2>(pass, own, sum);
+    }
+  }
+
+  const ChangingLists& lists_;
+  int i_, lane_, n_, rounds_;  ///< rounds_: of the longest list of the warp
+  const int4* overflow_;
+  int entry_[kKept];
+};
+
+}  // namespace pbf::PBF_VARIANT

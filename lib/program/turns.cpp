@@ -1,0 +1,17 @@
+#include "lib/program/turns.h"
+
+namespace pbf::program_module {
+
+bool takes_turns(const Scene& s, const Plan& plan) {
+  const bool fast = s.backend == Backend::cuda && s.precision == Precision::single &&
+                    !s.solver.reproducible && plan.particles <= kMostInTurns;
+  const bool one_step = plan.substeps == 1 && plan.finest_level == 0;
+  const bool rounds = s.solver.iterations > 0 && s.solver.iterations <= kMostTurns &&
+                      s.solver.fused && s.solver.kernels == KernelMode::consistent &&
+                      plan.levels.all.count == 0;
+  const bool in_a_box = s.dimensions == 3 && !has_obstacles(s) && !has_wall_loads(s) &&
+                        !changes_rows(s) && s.domain.periodic.empty();
+  return fast && one_step && rounds && in_a_box;
+}
+
+}  // namespace pbf::program_module

@@ -1,0 +1,110 @@
+// The CUDA backend makes lists and runs all iterations in one launch where there are few particles
+// (lib/program/turns.h). The bits are those of the passes one by one, which traces launch.
+#include <thread>
+
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
+
+using namespace oracle_test;
+using backend_test::here;
+using backend_test::is_double;
+
+namespace {
+
+/// A block of fluid that falls, with some particles in one place and some that pass others fast.
+Case falling_block(int edge) {
+  Case c = here(jittered_block(edge, edge, edge, 0.3, 0.5));
+  auto& p = c.particles;
+  const std::size_t n = p.position.size();
+  p.position[n / 2] = p.position[n / 2 + 1];
+  p.position[n - 1] = p.position[n - 2] = p.position[n - 3];
+  p.velocity[n / 3] = {12, 0, -3};
+  c.scene.viscosity = pbf::Viscosity{};
+  c.scene.viscosity->xsph = 0.05;
+  c.scene.tensile = pbf::Tensile{};
+  c.scene.solver.prestabilize = false;
+  return c;
+}
+
+bool takes_turns(const Case& c) {
+  return pbf::make_plan(c.scene, std::int64_t(c.particles.size())).turns;
+}
+
+/// After some updates, recorded or one by one. One solver at a time: where several share a device,
+/// they do not take turns.
+struct Ending {
+  pbf::SolverState state;
+  double compression = 0, launches = 0;
+  std::int64_t neighbors = 0;
+};
+Ending after_updates(const Case& c, bool one_by_one, int updates = 12) {
+  auto solver = make(c);
+  if (one_by_one)
+    for (int k = 0; k < updates; ++k) solver->inspection()->trace();
+  else
+    solver->step(updates);
+  const pbf::Diagnostics m = solver->diagnose();
+  return {solver->state(), m.compression_mean, solver->info().launches, m.neighbors_max};
+}
+void check_same(const Ending& a, const Ending& b) {
+  CHECK(backend_test::same_particles(a.state, b.state));
+  CHECK(a.compression == b.compression);
+  CHECK(a.neighbors == b.neighbors);
+}
+
+}  // namespace
+
+TEST_CASE("updates give the bits of passes one by one for all numbers of threads per particle") {
+  const Case c = falling_block(GENERATE(5, 10, 14, 20, 25, 28, 33, 36, 47));
+  CAPTURE(c.particles.size());
+  const bool on_gpu = backend_test::backend() == pbf::Backend::cuda && !is_double();
+  CHECK(takes_turns(c) == (on_gpu && c.particles.size() <= 24000));
+  const int updates = c.particles.size() > 30000 ? 4 : 12;
+  const Ending together = after_updates(c, false, updates);
+  check_same(together, after_updates(c, true, updates));
+  if (takes_turns(c)) CHECK(together.launches < 8);  // one for lists and 8 passes
+}
+
+TEST_CASE("updates give the bits of passes one by one for all forms of these passes") {
+  Case c = falling_block(12);
+  c.scene.time.order = GENERATE(pbf::TimeOrder::first, pbf::TimeOrder::second);
+  c.scene.solver.iterations = GENERATE(1, 2, 5);
+  c.scene.tensile->n = GENERATE(3, 4);
+  if (GENERATE(false, true)) c.scene.tensile.reset();
+  check_same(after_updates(c, false), after_updates(c, true));
+}
+
+TEST_CASE("updates give the bits of passes one by one with what turns exclude or divide") {
+  Case c = falling_block(13);
+  SECTION("factors of each iteration") { c.scene.solver.method = pbf::SolverMethod::chebyshev; }
+  SECTION("substeps") { c.scene.solver.substeps = 3; }
+  SECTION("more iterations while it is compressed") {
+    c.scene.solver.tolerance = 1e-4;
+    c.scene.solver.max_iterations = 24;
+  }
+  SECTION("density and lambda apart") { c.scene.solver.fused = false; }
+  SECTION("many iterations") { c.scene.solver.iterations = 33; }
+  SECTION("walls with loads") { c.scene.domain.loads = true; }
+  check_same(after_updates(c, false), after_updates(c, true));
+}
+
+TEST_CASE(
+    "updates give the bits of passes one by one where lists are long and outgrow their room") {
+  Case c = here(jittered_block(16, 16, 16, 0.3, 0.2, 1, GENERATE(0.5, 0.6, 0.75)));
+  c.scene.solver.prestabilize = false;
+  const Ending together = after_updates(c, false);
+  CHECK(together.neighbors > 40);
+  check_same(together, after_updates(c, true));
+}
+
+TEST_CASE("solvers of several sizes beside each other, on threads of their own, change no bit") {
+  const Case small = falling_block(8), large = falling_block(24);
+  const Ending a = after_updates(small, false, 300), b = after_updates(large, false, 300);
+  Ending c, d;
+  {
+    const std::jthread one([&] { c = after_updates(small, false, 300); });
+    const std::jthread other([&] { d = after_updates(large, false, 300); });
+  }
+  check_same(a, c);
+  check_same(b, d);
+}
