@@ -56,8 +56,9 @@ constexpr int list_stride(int n) { return (n + 31) / 32 * 32; }
 /// Number of blocks (128 threads each) in the sums of a measurement.
 constexpr int reduce_blocks(std::int64_t n) { return int(n < 65536 ? (n + 127) / 128 : 512); }
 
-/// A single block sorts up to this many particles and bins. Its counters and ids fit in 60 KiB of
+/// A single block sorts up to this many particles and bins. Its counters and ids fit in 48 KiB of
 /// shared memory, which every device has. From 1500 particles on, several kernels are faster.
-constexpr int kSortThreads = 1024, kSortParticles = 1500, kSortBins = 12 * 1024 - 64;
+constexpr int kSortThreads = 1024, kSortParticles = 1500,
+              kSortBins = 12 * 1024 - 65 - kSortParticles;
 
 }  // namespace pbf::program_module

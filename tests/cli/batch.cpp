@@ -191,7 +191,7 @@ TEST_CASE("a batch of a list takes the settings of its lines, and wrong lists ar
       {{"tiny.yaml", "--grid", "fluid.spacing=0.02:0.04:1"}, "is no range FIRST:LAST:COUNT"},
       {{"tiny.yaml", "--time", "30"}, "--time requires --slurm"},
       {{"tiny.yaml", "--only", "1"}, "--only 1"},
-      {{"tiny.yaml", "--only", "0", "--share", "yes"}, "--only excludes --share"},
+      {{"tiny.yaml", "--only", "0", "--share", "yes"}, "--share excludes --only"},
       {{"bad.txt"}, "bad.txt:2: \"iterations\" is not key.path=value"}};
   folder.write("bad.txt", "tiny.yaml\ntiny.yaml iterations 3\n");
   for (auto [args, text] : wrong) {

@@ -38,9 +38,6 @@ class CountingSort {
              const First& first, ListState* lists, const Gather& gather) {
     const auto kernel = &small_sort_kernel<leave, Rows, First, Gather>;
     const std::size_t shared = (std::size_t(s.all) + 1 + std::size_t(rows)) * sizeof(int);
-    if (shared > kSharedWithoutAsking)
-      PBF_CUDA_CHECK(
-          cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(shared)));
     launcher.start(kernel, kSortThreads, kSortThreads, shared, n, first, s.all, s.start, lists,
                    in_order<leave>(s, first.bin, gather));
   }

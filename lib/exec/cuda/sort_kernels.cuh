@@ -7,9 +7,8 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// Bytes of shared memory in a block beside 128 of a kernel's own.
-constexpr std::size_t kSharedWithoutAsking = 48 * 1024 - 128;
-static_assert((kSortBins + 1 + kSortParticles) * sizeof(int) <= 60 * 1024);
+static_assert((kSortBins + 1 + kSortParticles + 32) * sizeof(int) <= 48 * 1024,
+              "counts, ids and warp_sum in one block");
 
 /// Also clears the counts for the next sort, and the number of used overflows.
 template <class Rows>

@@ -154,8 +154,8 @@ class TurnLauncher {
   /// Runs `lambda` and `delta` in turns in one launch, once for each of `factors` (omega), and
   /// before that makes `lists` if `makes_lists`. total: particles of the whole scene. False if not
   /// all blocks can run at the same time; then nothing is launched. Not where solvers share a
-  /// device either: each would wait with all of it, while kernels of single passes run beside each
-  /// other.
+  /// process and a device either: each would wait with all of it, while kernels of single passes
+  /// run beside each other.
   template <class Lambda, class Delta>
   bool all(Launcher& launcher, std::int64_t total, const RowRange& rows, bool makes_lists,
            const ListPass<float, 3, false>& lists, const Lambda& lambda, const Delta& delta,
