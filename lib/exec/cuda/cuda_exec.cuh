@@ -215,9 +215,9 @@ class CudaExec : public CudaSums {
   /// See TurnLauncher::all() and one(). Not all in one launch if an update is timed stage by stage.
   bool turns(const RowRange& rows, bool makes_lists, const int* bin_start, const auto& lambda,
              const auto& delta, std::span<const float> factors) {
+    if (profiling_) return false;
     const auto* x = lambda.position.rows();
     const auto lists = lists_.pass<3, false>(lambda.lists.far, x, bin_start, lambda.p);
-    if (profiling_) return false;
     return turns_.all(launcher_, total_, rows, makes_lists, lists, lambda, delta, factors);
   }
   void turn(const RowRange& rows, bool is_lambda, const auto& lambda, const auto& delta) {

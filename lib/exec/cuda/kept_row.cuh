@@ -37,7 +37,7 @@ struct ChangingLists : TransposedLists {
 };
 
 /// What LambdaPass and DeltaPass read and write of their own particle. Positions are stored at
-/// once, for other threads; the rest, which only later kernels read, by store().
+/// once, for other threads; the rest, which only later kernels read, at the end of the kernel.
 struct KeptRow {
   int i;
   const Vec4<float>*position_rows, *velocity_rows;

@@ -25,11 +25,12 @@ constexpr int kListLanes = 40000;
 template <int D, class F>
 void with_lanes(std::int64_t total, const F& f) {
   constexpr bool space = D == 3;
+  constexpr int more = space ? 2 : 1;
   if constexpr (space)
     if (total <= kSixteenLanes) return f(std::integral_constant<int, 16>{});
-  if (total <= kEightLanes) return f(std::integral_constant < int, space ? 8 : 4 > {});
+  if (total <= kEightLanes) return f(std::integral_constant<int, 4 * more>{});
   if constexpr (kFourLanes > 0)
-    if (total <= kFourLanes) return f(std::integral_constant < int, space ? 4 : 2 > {});
+    if (total <= kFourLanes) return f(std::integral_constant<int, 2 * more>{});
   if constexpr (space && kTwoLanes > 0)
     if (total <= kTwoLanes) return f(std::integral_constant<int, 2>{});
   f(std::integral_constant<int, 1>{});

@@ -118,7 +118,7 @@ struct ListPass : ListSearch<Real, D, unchanged> {
     const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
     const GridCell c = cell_of<D>(in_space(xi), p);
     int begin[rows], end[rows], longest = 0;
-    unsigned hits[rows] = {};
+    unsigned hit_bits[rows] = {};
 #pragma unroll
     for (int r = 0; r < rows; ++r) {
       const Row row = row_of(c, valid ? r : rows);
@@ -132,7 +132,7 @@ struct ListPass : ListSearch<Real, D, unchanged> {
         const int j = begin[r] + k * of_list;
         const Vec4<Real> x = at(position + (j < end[r] ? j : far));
         const bool hit = beyond(xi - point<D>(x)) < Real(0) && j != i;
-        hits[r] |= unsigned(hit) << k;
+        hit_bits[r] |= unsigned(hit) << k;
       }
     }
     const int group = threadIdx.x % 32 / of_list * of_list;
@@ -140,7 +140,7 @@ struct ListPass : ListSearch<Real, D, unchanged> {
 #pragma unroll
     for (int r = 0; r < rows; ++r)
       for (int k = 0; k < min(rounds, 32); ++k) {
-        const bool hit = hits[r] >> k & 1;
+        const bool hit = hit_bits[r] >> k & 1;
         const unsigned found = (__ballot_sync(kWarp, hit) >> group) & ((1u << of_list) - 1);
         const int place = all + __popc(found & ((1u << lane) - 1));
         if (hit && place < staged) stage[place] = begin[r] + k * of_list;

@@ -87,11 +87,11 @@ struct TransposedLists {
 };
 
 /// Adds the neighbors in a word. All four are loaded before the first is added.
-template <class Index = Neighbor, class Pass, class Own, class Sum>
+template <class Pass, class Own, class Sum>
 __device__ __forceinline__ void add_word(const Pass& pass, Sum& sum, const Own& own,
                                          const int4& word) {
-  const auto a = pass.other(Index{word.x}), b = pass.other(Index{word.y}),
-             c = pass.other(Index{word.z}), d = pass.other(Index{word.w});
+  const auto a = pass.other(Neighbor{word.x}), b = pass.other(Neighbor{word.y}),
+             c = pass.other(Neighbor{word.z}), d = pass.other(Neighbor{word.w});
   pass.add(sum, own, a);
   pass.add(sum, own, b);
   pass.add(sum, own, c);
