@@ -53,7 +53,7 @@ struct DissipationBook {
   /// The same for a group of adjacent rows (kernels/lanes.h), whose number divides 256: one
   /// addition for all. A processor takes tens of cycles for each.
   template <class Group, class V>
-  PBF_HD void add(Group rows, const V& taken) const {
+  requires(V::width > 0) PBF_HD void add(Group rows, const V& taken) const {
     if (!sums) return;
     std::int64_t all = 0;
     for (int l = 0; l < V::width; ++l) all += units(taken.v[l]);

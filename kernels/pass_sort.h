@@ -16,21 +16,34 @@ struct BinSort {
   int* start;     ///< out: first row of each of `bins`; at bins.end the number of rows
 };
 
-/// Runs `First`, which gives a row its bin, and then stores the row's number in that bin in order
-/// of arrival. leave: a row with a negative id gets no bin, and bins may be outside the range.
+/// Counts the rows of each bin. leave: a row with a negative id gets no bin, and bins may be
+/// outside the range.
+template <bool leave>
+struct Arrivals {
+  BinRange bins{};
+  int* count = nullptr;     ///< of each bin of the grid
+  int* arrival = nullptr;   ///< out: a row's number in its bin, in order of arrival
+  const int* id = nullptr;  ///< null: none is negative
+  /// bin: of each row, in/out.
+  PBF_HD void add(int* bin, int i) const {
+    if (leave && id && id[i] < 0) bin[i] = -1;
+    const int b = bin[i];
+    if (leave ? !bins.has(b) : b < 0) return;  // < 0: left to a pass over listed rows
+    arrival[i] = take_place_of(count + b);
+  }
+};
+/// Runs `First`, which gives a row its bin, and then counts it.
 template <bool leave, class First>
 struct CountPass : First {
-  BinRange bins;
-  int *count, *arrival;  ///< count: of each bin of the grid
-  const int* id;         ///< null: none is negative
+  Arrivals<leave> arrivals;
   PBF_HD void operator()(int i) const requires ItemPass<First> {
     First::operator()(i);
-    arrive(row_of(static_cast<const First&>(*this), i, 0));
+    arrivals.add(First::bin, row_of(static_cast<const First&>(*this), i, 0));
   }
   template <class Own, class Sum>
   PBF_HD void finish(int i, const Own& own, const Sum& sum) const {
     First::finish(i, own, sum);
-    arrive(i);
+    arrivals.add(First::bin, i);
   }
   /// For a pass over listed rows.
   template <class Pass>
@@ -41,12 +54,6 @@ struct CountPass : First {
   PBF_HD static int row_of(const Pass&, int i, long) {
     return i;
   }
-  PBF_HD void arrive(int i) const {
-    if (leave && id && id[i] < 0) First::bin[i] = -1;
-    const int b = First::bin[i];
-    if (leave ? !bins.has(b) : b < 0) return;  // < 0: left to a pass over listed rows
-    arrival[i] = take_place_of(count + b);
-  }
 };
 /// For rows that already have their bin.
 struct KnownBinPass {
@@ -54,15 +61,26 @@ struct KnownBinPass {
   PBF_HD void operator()(int) const {}
 };
 
-/// Puts the ids of the rows that stay into their bins, in order of arrival.
+/// Puts the ids of the rows that stay into their bins, in order of arrival, and clears the counts
+/// of these bins for the next sort: most bins hold no fluid.
 struct PlacePass {
   BinRange bins;
   const int *bin, *id, *start, *arrival;
-  int* slot;  ///< out
+  int *slot, *count;  ///< out
   PBF_HD void operator()(int i) const {
-    if (const int b = bin[i]; bins.has(b)) slot[start[b] + arrival[i]] = id[i];
+    const int b = bin[i];
+    if (!bins.has(b)) return;
+    slot[start[b] + arrival[i]] = id[i];
+    count[b] = 0;
   }
 };
+/// The place of a row among those of its bin, in the order of their ids: `slot` holds these from
+/// `begin` to `end`.
+PBF_HD int place_in_bin(const int* slot, int begin, int end, int id) {
+  int place = begin;
+  for (int m = begin; m < end; ++m) place += slot[m] < id ? 1 : 0;
+  return place;
+}
 /// Moves the rows of a bin to the order of their ids, so that the order of rows follows from the
 /// positions alone: each thread counts the smaller ids in the bin of its row.
 template <bool leave, class Gather>
@@ -73,10 +91,7 @@ struct OrderPass {
   PBF_HD void operator()(int i) const {
     const int b = bin[i];
     if (leave && !bins.has(b)) return;
-    const int mine = id[i], end = start[b + 1];
-    int place = start[b];
-    for (int m = place; m < end; ++m) place += slot[m] < mine ? 1 : 0;
-    gather(i, place);
+    gather(i, place_in_bin(slot, start[b], start[b + 1], id[i]));
   }
 };
 

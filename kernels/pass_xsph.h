@@ -20,7 +20,8 @@ PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
 
 /// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last iteration.
 /// The weight is symmetric, so momentum is kept to rounding. If an update follows, this pass also
-/// computes the particle's bin for it, in place of that update's `predict`.
+/// computes the particle's bin for it, in place of that update's `predict`. With the same bits in
+/// every kernel, because it runs alone and in a kernel with other passes: see mul_add().
 template <class Real, class Lists, Smoothing S, class Order, class Boundary>
 struct XsphPass {
   Params<Real> p;
@@ -50,9 +51,9 @@ struct XsphPass {
   template <class V>
   PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b) const {
     const Vec<V, D> d = a.x - point<D>(b.x);
-    const V q2 = dot(d, d);
-    const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
-    s.v = s.v + (shape * (a.w + b.x.w)) * (point<D>(b.v) - a.v);
+    const V q2 = square_by_mul_add(d);
+    const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t_of_square(q2));
+    s.v = mul_add(shape * (a.w + b.x.w), point<D>(b.v) - a.v, s.v);
   }
   template <class V>
   PBF_HD bool together(const VectorSum<V, D>&) const requires(!Boundary::far_only) {
@@ -60,7 +61,8 @@ struct XsphPass {
   }
   template <class Index, class V>
   PBF_HD void finish(Index i, const XsphOwn<V, D>& a, const VectorSum<V, D>& s) const {
-    const Vec3<V> v = in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
+    const V factor(Real(0.5) * p.xsph * p.vol * density_norm<Real, S>());
+    const Vec3<V> v = in_space(mul_add(factor, s.v, a.v));
     set_row(velocity_out, i, with_w(v, V(0)));
     book.add(i, energy_taken(in_space(a.v), v));
     if (bin) set_row(OwnRows(bin), i, predicted_bin<D>(i, in_space(a.x), v, order, p, boundary));

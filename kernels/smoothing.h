@@ -40,6 +40,16 @@ struct Spiky {
   static PBF_HD V t(V q) {
     return max2(V(1) - q, V(0));
   }
+  /// The same from q^2, with the same bits in every kernel: see mul_add().
+  template <class V>
+  static PBF_HD V t_of_square(V q_squared) {
+    const auto root = root_of(q_squared);
+#ifdef PBF_FAST_DEVICE
+    return max2(mul_add(-q_squared, root.inverse, V(1)), V(0));
+#else
+    return t(root.q);
+#endif
+  }
 };
 
 template <class Real, Smoothing S>

@@ -115,6 +115,19 @@ template <class Real>
 PBF_HD Vec3<Real> mul_add(Real a, Vec3<Real> b, Vec3<Real> c) {
   return {mul_add(a, b.x, c.x), mul_add(a, b.y, c.y), mul_add(a, b.z, c.z)};
 }
+template <class Real>
+PBF_HD Vec2<Real> mul_add(Real a, Vec2<Real> b, Vec2<Real> c) {
+  return {mul_add(a, b.x, c.x), mul_add(a, b.z, c.z)};
+}
+/// |d|^2 in the same way.
+template <class Real>
+PBF_HD Real square_by_mul_add(Vec3<Real> d) {
+  return mul_add(d.z, d.z, mul_add(d.y, d.y, d.x * d.x));
+}
+template <class Real>
+PBF_HD Real square_by_mul_add(Vec2<Real> d) {
+  return mul_add(d.z, d.z, d.x * d.x);
+}
 
 /// q and 1/q from q^2 for a pair loop; q^2 below 1e-30 counts as 1e-30, so that a coincident pair
 /// gives q = 1e-15 and, with its zero distance vector, a zero gradient instead of 0/0. Fast device

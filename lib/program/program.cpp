@@ -235,6 +235,8 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
   p.rest = joined(Steps(begin, middle.end()), b);
   p.next = joined(end + head, b);
   p.last = joined(end, b);
+  p.rest_next = p.rest + p.next;
+  p.rest_last = p.rest + p.last;
   p.lists = Steps{b.sort, b.make_lists} + b.with_all_lists;
   p.between = std::move(b.between);
   p.between_every = p.between.empty() ? 0 : b.between_every;

@@ -34,6 +34,8 @@ struct Program {
   /// Updates with fused passes: n updates are first, rest, n - 1 times (next, rest), last. They
   /// give the same bits.
   Steps first, rest, next, last;
+  /// The same as first, n - 1 times rest_next, rest_last: lists of passes that may share a launch.
+  Steps rest_next, rest_last;
   /// Makes lists at the present positions, for a measurement.
   Steps lists;
   /// Passes behind every update whose number is a multiple of `between_every`.

@@ -104,6 +104,13 @@ class Granted {
   C& c_;
 };
 
+/// Swaps the arrays that pass P swaps before its launch.
+template <class P, class C>
+void swap_arrays(C& c) {
+  if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
+  if constexpr (C::Passes::carries_fields && reorders<P>) c.flip_carried();
+}
+
 template <class RealType, class Exec, class FeatureSet>
 template <class P>
 void StepContext<RealType, Exec, FeatureSet>::as_pass(const auto& launch) {

@@ -11,8 +11,7 @@ void launch_one(C& c) {
   constexpr bool has_ranks = requires { c.exec.template before<P>(c); };
   if constexpr (has_ranks)
     if (!c.exec.template before<P>(c)) return;
-  if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
-  if constexpr (C::Passes::carries_fields && reorders<P>) c.flip_carried();
+  swap_arrays<P>(c);
   if (!take_turn<P>(c)) c.template as_pass<P>([](const auto& granted) { P::launch(granted); });
   if constexpr (C::changes_rows && (how_of<P, field::RowNumber> & kWriting) != 0)
     c.exec.rows_changed();

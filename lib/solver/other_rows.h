@@ -15,6 +15,12 @@ constexpr bool has_ranks = requires(C& c) {
   c.exec.rows();
 };
 
+template <class C>
+bool has_other_ranks([[maybe_unused]] C& c) {
+  if constexpr (has_ranks<C>) return c.exec.rows() != nullptr;
+  return false;
+}
+
 /// Before the arrays are made.
 template <class C>
 void begin_rows(C& c, const InternalState<typename C::Real>& first) {

@@ -17,6 +17,7 @@
 #include "lib/solver/stage_check.h"
 #include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
+#include "lib/solver/with_lists.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -44,17 +45,22 @@ class Stepper {
     if (updates <= 0) return;
     c_.exec.begin();
     in_batch(c_, true);
-    const bool unfused = is_unfused(c_, *program_);
-    for (int k = 0; k < updates && !has_lost_rows(c_); ++k) {
-      if (unfused) {
+    if (is_unfused(c_, *program_)) {
+      for (int k = 0; k < updates && !has_lost_rows(c_); ++k) {
         wrap_rows(c_);
         run(program_->update);
-        continue;
       }
-      run(k == 0 ? program_->first : program_->next);
-      run(program_->rest);
+    } else if (has_other_ranks(c_)) {  // which look for lost rows before a sort, not behind it
+      for (int k = 0; k < updates && !has_lost_rows(c_); ++k) {
+        run(k == 0 ? program_->first : program_->next);
+        run(program_->rest);
+      }
+      run(program_->last);
+    } else {
+      run(program_->first);
+      for (int k = 1; k < updates; ++k) run(program_->rest_next);
+      run(program_->rest_last);
     }
-    if (!unfused) run(program_->last);
     in_batch(c_, false);
     moved();
   }
@@ -80,7 +86,6 @@ class Stepper {
     step_seen([&](const PassInfo& pass, int number) { check.look(pass, number); });
     return check.event();
   }
-
   int capacity() const { return c_.capacity(); }
   /// The present number of particles here, for which the host waits if it changes.
   int rows() { return c_.host_particles(c_.data(field::row_state)); }
@@ -92,7 +97,6 @@ class Stepper {
   }
   /// What the addresses and numbers of launches follow from: recorded updates are valid for it.
   std::pair<int, int> launch() const { return {c_.placement(), c_.launched}; }
-
   /// Later steps use this scene, these parameters and this program.
   void use(const Scene& scene, const Params<Real>& p, const Program& program) {
     c_.scene = scene;
@@ -115,14 +119,12 @@ class Stepper {
     c_.for_features([&](auto& m) { most = std::min(most, m.most_steps(c_.scene, plan_)); });
     return most;
   }
-
   /// s, see lib/solver/state_transfer.h.
   double velocity_lag() { return pbf::velocity_lag(c_); }
   /// h^2/s^3: power per particle mass of the tank's inertial forces. lag: velocity_lag().
   double power(const FrameStep<double>& frame, double lag, double dt) {
     return motion_power(c_, rows(), frame, lag, dt);
   }
-
   /// The load of each wall since the last call with Interval::ends.
   std::vector<Load> loads(Interval interval) { return read_loads(c_, interval); }
   /// What took energy from the motion since the start: sums for dissipated().
@@ -187,7 +189,6 @@ class Stepper {
     forget();
     moved();
   }
-
   /// Makes lists at the present positions unless there are some; true if it made them. The lists of
   /// the last update belong to its predicted positions, so a density summed over them would miss
   /// pairs that have come closer since. Rows are in the order of bin and id, so the additional sort
@@ -206,14 +207,12 @@ class Stepper {
     density_is_current_ = false;
     sum_density();
   }
-
   /// Sums at the present positions. Call find_pairs() first.
   MeasureSums measure(const MeasureConstants& given) {
     c_.exec.begin();
     sum_density();
     return measure_state(c_, particles(), given);
   }
-
   /// Densities need find_pairs() first.
   void ready_to_export(bool density) {
     c_.exec.begin();
@@ -241,10 +240,11 @@ class Stepper {
     launch_pass<Passes>(pass, c_);
     c_.exec.mark(c_.booked(Passes::texts[std::size_t(pass)].stage));
   }
-  /// Lists and iterations in one launch, where the executor can.
+  /// Several steps in one launch or beside each other, where the executor can.
   void run(const Steps& steps) {
     for (std::size_t k = 0; k < steps.size(); ++k)
-      if (!take_turns(c_, steps, k)) run(steps[k], [](int) {});
+      if (!take_turns(c_, steps, k) && !with_lists(c_, steps, k, [&](int p) { launch(p); }))
+        run(steps[k], [](int) {});
   }
   void run(const ProgramStep& s, const auto& seen) {
     if (s.kind == ProgramStep::pass) {

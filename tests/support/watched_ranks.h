@@ -71,15 +71,14 @@ class EdgeCpu : public CpuExec {
   void begin_sort(const BinSort& s) { counts_.resize(std::size_t(s.all) + 1); }
   template <class Pass>
   CountPass<true, Pass> counting(const BinSort& s, const Pass& pass) {
-    return {pass, s.bins, counts_.data(), s.order, s.id};
+    return {pass, {s.bins, counts_.data(), s.order, s.id}};
   }
   template <class Gather>
   void sort_counted(const BinSort& s, const int* bin, int n, const Gather& gather) {
     const auto begin = counts_.begin() + s.bins.begin, end = counts_.begin() + s.bins.end;
     std::exclusive_scan(begin, end + 1, s.start + s.bins.begin, 0);
-    std::fill(begin, end, 0);
     slot_.resize(std::size_t(n));
-    CpuExec::items(n, PlacePass{s.bins, bin, s.id, s.start, s.order, slot_.data()});
+    CpuExec::items(n, PlacePass{s.bins, bin, s.id, s.start, s.order, slot_.data(), counts_.data()});
     CpuExec::items(n, OrderPass<true, Gather>{s.bins, bin, s.id, s.start, slot_.data(), gather});
   }
 

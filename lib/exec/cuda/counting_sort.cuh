@@ -21,7 +21,11 @@ class CountingSort {
   }
   template <bool leave, class Pass>
   CountPass<leave, Pass> counting(const BinSort& s, const Pass& pass) {
-    return {pass, s.bins, counts_.data(), s.order, s.id};
+    return {pass, arrivals<leave>(s)};
+  }
+  template <bool leave>
+  Arrivals<leave> arrivals(const BinSort& s) {
+    return {s.bins, counts_.data(), s.order, s.id};
   }
   /// Bins become places. The counts are those for the next sort.
   template <class Rows>
@@ -29,7 +33,7 @@ class CountingSort {
              ListState* lists) {
     scan(s.bins, s.start, launcher.ready());
     launcher.start(place_kernel<Rows>, most(n), kBlock, 0, n,
-                   PlacePass{s.bins, bin, s.id, s.start, s.order, slot_.data()}, counts_.data(),
+                   PlacePass{s.bins, bin, s.id, s.start, s.order, slot_.data(), counts_.data()},
                    lists);
   }
   /// All of a sort whose passes before this one have given rows their bins, or whose `first` does.

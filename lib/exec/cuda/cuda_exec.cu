@@ -67,7 +67,7 @@ void DeviceLists::use(const ListCapacity& capacity, int n) {
 }
 
 CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
-    : CudaSums(total, rows), lists_(capacity) {
+    : CudaPasses(total, rows), lists_(capacity) {
   int device = 0, driver = 0;
   cudaDeviceProp p{};
   PBF_CUDA_CHECK(cudaGetDevice(&device));

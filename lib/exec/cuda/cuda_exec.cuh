@@ -1,5 +1,4 @@
-// The CUDA executor: one stream; a thread per particle, or several for a neighbor sum where there
-// are few particles, and then also all iterations in one kernel.
+// The CUDA executor: one stream; for few particles all iterations in one kernel.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +8,17 @@
 
 #include "lib/base/stage_clock.h"
 #include "lib/exec/cuda/counting_sort.cuh"
-#include "lib/exec/cuda/cuda_sums.cuh"
+#include "lib/exec/cuda/cuda_passes.cuh"
 #include "lib/exec/cuda/device_lists.cuh"
 #include "lib/exec/cuda/host_copy.cuh"
-#include "lib/exec/cuda/kernels.cuh"
 #include "lib/exec/cuda/recorded.cuh"
 #include "lib/exec/cuda/repeat.cuh"
-#include "lib/exec/cuda/shared_pass.cuh"
 #include "lib/exec/cuda/turns.cuh"
 #include "lib/solver/executor.h"
 
 namespace pbf::PBF_VARIANT {
 
-class CudaExec : public CudaSums {
+class CudaExec : public CudaPasses {
  public:
   using Lists = TransposedLists;
   using UnknownRows = RowsBetween;  ///< of ranks: rows whose numbers the host does not know yet
@@ -91,46 +88,6 @@ class CudaExec : public CudaSums {
   /// The next kernel starts after the last one has ended, so it sees the new number.
   void rows_changed() { launcher_.alone = true; }
 
-  template <class Rows, ItemPass Pass>
-  void items(const Rows& n, const Pass& pass) {
-    launch(item_kernel<Rows, Pass>, most(n), kBlock, 0, n, pass);
-  }
-  /// The number of threads determines the tree of a neighbor sum, so it follows from the particles
-  /// of the whole scene, not from those here.
-  template <class Rows, PairPass Pass>
-  void pairs(const Rows& n, const Pass& pass) {
-    with_lanes<Pass::D>(total_, [&](auto lanes) {
-      if constexpr (lanes == 1)
-        launch(pair_kernel<Rows, Pass>, most(n), kBlock, 0, n, pass);
-      else
-        launch(lanes_kernel<lanes, Rows, Pass>, lanes * most(n), kBlock, 0, n, pass);
-    });
-  }
-  template <SharedPass Pass>
-  void shared(int n, const Pass& pass) {
-    launch(shared_kernel<Pass>, n * Pass::lanes, kBlock, 0, n, pass);
-  }
-  template <TeamPass Pass>
-  void teams(const Pass& pass) {
-    int blocks = 0;
-    for (int g = 0; g < pass.groups(); ++g) blocks += team_blocks(pass, g);
-    launch(team_kernel<Pass>, blocks * kTeam, kTeam, 0, pass);
-  }
-  template <BrickPass Pass>
-  void bricks(const Pass& pass) {
-    bricks(pass, 0, pass.grid.bricks());
-  }
-  template <BrickPass Pass>
-  void bricks(const Pass& pass, int begin, int end) {
-    launch(brick_kernel<Pass>, (end - begin) * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, begin,
-           pass);
-  }
-  /// See CpuExec. Their number is known on the device alone.
-  template <ItemPass Pass>
-  void listed(const int* count, int at_most, const Pass& pass) {
-    launch(listed_kernel<Pass>, std::min(at_most, kBlock * kListedBlocks), kBlock, 0, count, pass);
-  }
-
   /// See CpuExec. If a graph is captured, the body becomes part of it, and the device repeats it
   /// without the host; otherwise the host waits for every sum.
   template <class Rows, class Pass, class Body>
@@ -159,18 +116,24 @@ class CudaExec : public CudaSums {
     }
   }
 
-  /// See CpuExec; `order` holds the order of arrival within bins.
+  /// See CpuExec; `order` holds the order of arrival within bins. If `first` runs in a kernel with
+  /// other passes, first.launch(arrivals) launches it, and its rows are counted unless that is
+  /// empty.
   template <bool leave, class Rows, class First, class Listed, class Gather>
   const int* sort_by_bin(const char* stage, const First& first, const Listed& near, const Rows& n,
                          int bins, const int* id, int* order, int* start, const Gather& gather) {
     constexpr bool leaves_rows = requires { near.pass; };
+    constexpr bool launches = requires { first.launch; };
     const BinSort sort{{0, bins}, bins, id, order, start};
     const auto all = int(rows_);
     if (all <= kSortParticles && bins <= kSortBins) {
       const auto small = [&](const auto& before) {
         sort_.small<leave>(launcher_, sort, rows_, n, before, lists_.state(), gather);
       };
-      if constexpr (leaves_rows || PairPass<First>) {
+      if constexpr (launches) {
+        first.launch({});
+        small(KnownBinPass{first.bin});
+      } else if constexpr (leaves_rows || PairPass<First>) {
         items_or_pairs(n, first);
         if constexpr (leaves_rows) {
           if (near.count) listed(near.count, all, near.pass);
@@ -183,7 +146,10 @@ class CudaExec : public CudaSums {
       return start + bins;
     }
     begin_sort(sort);
-    items_or_pairs(n, counting<leave>(sort, first));
+    if constexpr (launches)
+      first.launch(sort_.arrivals<leave>(sort));
+    else
+      items_or_pairs(n, counting<leave>(sort, first));
     if constexpr (leaves_rows) {
       if (near.count) listed(near.count, all, counting<leave>(sort, near.pass));
     }
@@ -209,19 +175,52 @@ class CudaExec : public CudaSums {
     return lists_.make(launcher_, n, far, position, bin_start, p);
   }
 
+  /// Whether run_beside() may be used: not if an update is timed by stages, as the first one is, in
+  /// which the second stream is made, before a graph is recorded.
+  bool has_beside() {
+    if (!aside_) aside_ = std::make_unique<EdgeStream>();
+    return !profiling_;
+  }
+  /// Launches small() on a stream of its own beside large(); what follows needs both.
+  void run_beside(const auto& small, const auto& large) { aside_->beside(launcher_, small, large); }
+
 #ifndef PBF_PINNED
   using TurnLists = ChangingLists;  ///< for passes of turns() and turn()
   Lists prepare_lists(int far) { return lists_.prepare(far); }  ///< those that turns() makes
-  /// See TurnLauncher::all() and one(). Not all in one launch if an update is timed stage by stage.
-  bool turns(const RowRange& rows, bool makes_lists, const int* bin_start, const auto& lambda,
-             const auto& delta, std::span<const float> factors) {
-    if (profiling_) return false;
-    const auto* x = lambda.position.rows();
-    const auto lists = lists_.pass<3, false>(lambda.lists.far, x, bin_start, lambda.p);
-    return turns_.all(launcher_, total_, rows, makes_lists, lists, lambda, delta, factors);
+  /// Whether turns() can run these passes in one launch. Not if an update is timed by stages.
+  template <class Lambda, class Delta, class Xsph>
+  bool has_turns(const RowRange& rows, const Lambda&, const Delta&, const Xsph&) {
+    return !profiling_ && turns_.fits<Lambda, Delta, Xsph>(total_, rows);
   }
-  void turn(const RowRange& rows, bool is_lambda, const auto& lambda, const auto& delta) {
-    turns_.one(launcher_, total_, rows, is_lambda, lambda, delta);
+  /// Lists if bin_start is not null, lambda and delta once for each of `factors` (omega), and XSPH
+  /// if it has an array for its results. arrivals: see Turns.
+  template <class Lambda, class Delta, class Xsph>
+  void turns(const RowRange& rows, const int* bin_start, std::span<const float> factors,
+             const Lambda& lambda, const Delta& delta, const Xsph& xsph,
+             const Arrivals<false>& arrivals) {
+    const bool lists = bin_start != nullptr, sweeps = xsph.velocity_out.rows() != nullptr;
+    Turns<Lambda, Delta, Xsph> t{{lists, true, true, sweeps}, {}, lambda, delta, xsph, arrivals};
+    if (lists)
+      t.lists =
+          lists_.pass<3, false>(lambda.lists.far, lambda.position.rows(), bin_start, lambda.p);
+    t.times = int(factors.size());
+    std::copy(factors.begin(), factors.end(), t.factor);
+    turns_.all(launcher_, total_, rows, t);
+  }
+  /// Lambda, or else delta, alone, with the same bits.
+  template <class Lambda, class Delta, class Xsph>
+  void turn(const RowRange& rows, bool is_lambda, const Lambda& lambda, const Delta& delta,
+            const Xsph& none) {
+    turns_.one(launcher_, total_, rows,
+               Turns<Lambda, Delta, Xsph>{{false, is_lambda, !is_lambda, false},
+                                          {},
+                                          lambda,
+                                          delta,
+                                          none,
+                                          {},
+                                          1,
+                                          {delta.p.sor},
+                                          nullptr});
   }
 #endif
 
@@ -244,18 +243,11 @@ class CudaExec : public CudaSums {
   }
 
   std::size_t bytes() const {
-    return lists_.bytes() + sort_.bytes() + repeat_.bytes() + copy_.bytes() + CudaSums::bytes();
+    return lists_.bytes() + sort_.bytes() + repeat_.bytes() + copy_.bytes() + CudaPasses::bytes();
   }
 
  private:
   static constexpr int kSampleEvery = 64;  ///< updates of several ranks
-  template <class Rows, class Pass>
-  void items_or_pairs(const Rows& n, const Pass& pass) {
-    if constexpr (PairPass<Pass>)
-      pairs(n, pass);
-    else
-      items(n, pass);
-  }
   /// In turns an update for stage times, in which exchanges are not beside passes, and one for the
   /// time that exchanges take beside passes.
   template <class Updates>
@@ -295,6 +287,7 @@ class CudaExec : public CudaSums {
   CountingSort sort_;
   DeviceBuffer<RepeatState> repeat_;
   TurnLauncher turns_;
+  std::unique_ptr<EdgeStream> aside_;  ///< of run_beside()
 };
 
 }  // namespace pbf::PBF_VARIANT

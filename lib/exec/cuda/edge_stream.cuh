@@ -1,5 +1,5 @@
-// A second stream of a rank: passes for the rows at its cuts, and the exchange of these rows, run
-// beside the passes for its other rows.
+// A second stream, for launches beside those of the first. A rank has passes for the rows at its
+// cuts there, and the exchange of these rows, beside the passes for its other rows.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -33,7 +33,8 @@ class EdgeStream {
     cudaStreamDestroy(stream_);
   }
 
-  /// Launches of edges() are for the rows at the cuts, those of inner() for the others.
+  /// Launches of edges() are for the rows at the cuts, those of inner() for the others; or neither
+  /// needs results of the other.
   template <class Edges, class Inner>
   void beside(Launcher& launcher, const Edges& edges, const Inner& inner) {
     const cudaEvent_t awaited = std::exchange(launcher.awaited, nullptr);

@@ -40,7 +40,7 @@ class HitQueue {
       }
       const int k = 31 - __clz(int(now.bits));
       const int j = now.bits ? now.last - k : far;
-      now.bits &= ~(1u << k);
+      now.bits &= ~__funnelshift_l(0u, 1u, k);  // 1 << k, defined also for k = -1
       return j;
     };
     for (int words = (pending_ + padded) >> 2; words > 0; --words) {

@@ -24,29 +24,20 @@ struct ChangingLists : TransposedLists {
     const int4* o = overflow_words(i, count[i]);
     for (int e = 0; e < count[i]; ++e) f(ChangingNeighbor{{entry(i, e, o)}});
   }
-  /// Null if a list of n entries has none.
-  __device__ __forceinline__ const int4* overflow_words(int i, int n) const {
-    return n > 4 * first ? overflows + std::size_t(overflow_of[i]) * overflow : nullptr;
-  }
-  /// o: overflow_words(i).
-  __device__ __forceinline__ int entry(int i, int e, const int4* o) const {
-    const int k = e >> 2;
-    const int4* word = k < first ? words + i + std::size_t(k) * stride : o + (k - first);
-    return reinterpret_cast<const int*>(word)[e & 3];
-  }
 };
 
-/// What LambdaPass and DeltaPass read and write of their own particle. Positions are stored at
-/// once, for other threads; the rest, which only later kernels read, at the end of the kernel.
+/// What passes read and write of their own particle. Positions are stored at once, for other
+/// threads; the density and the velocity at the end of the iterations.
 struct KeptRow {
   int i;
-  const Vec4<float>*position_rows, *velocity_rows;
-  Vec4<float> position, direction, velocity;  ///< direction: LambdaPass::position_out
+  const Vec4<float>*position_rows, *velocity_rows, *direction_rows;
+  Vec4<float> position, velocity, direction;  ///< direction: LambdaPass::position_out
   float density;
 
   __device__ __forceinline__ Vec4<float> of(const Vec4<float>* rows) const {
     if (rows == velocity_rows) return velocity;
-    return rows == position_rows ? position : direction;
+    if (rows == direction_rows) return direction;
+    return rows == position_rows ? position : rows[i];
   }
   __device__ __forceinline__ void set(Vec4<float>* rows, const Vec4<float>& value) {
     if (rows == velocity_rows) {
@@ -54,10 +45,8 @@ struct KeptRow {
       return;
     }
     rows[i] = value;
-    if (rows == position_rows)
-      position = value;
-    else
-      direction = value;
+    if (rows == position_rows) position = value;
+    if (rows == direction_rows) direction = value;
   }
 };
 
@@ -96,17 +85,22 @@ class KeptEntries {
       entry_[k] = e >= n ? lists.far : stage ? stage[e] : lists.entry(i, e, overflow);
     }
   }
-  /// Adds all of them to a sum of a pass. The usual numbers of rows are loaded at once.
+  /// Adds all of them to a sum of a pass. The usual numbers of rows are loaded at once, if one row
+  /// of a neighbor is all that the pass needs.
   template <class Pass, class Own, class Sum>
   __device__ __forceinline__ void add_to(const Pass& pass, const Own& own, Sum& sum) const {
     constexpr int least = lanes == 16 ? 2 : 4;
-    if (rounds_ <= least)
-      add<0, least>(pass, own, sum);
-    else if (rounds_ == least + 1)
-      add<0, least + 1>(pass, own, sum);
-    else
-      add<0, least + 2>(pass, own, sum);
-    add_twos<least + 2>(pass, own, sum);
+    if constexpr (sizeof(pass.other(ChangingNeighbor{{0}})) > sizeof(Vec4<float>)) {
+      add_groups<0, least>(pass, own, sum);
+    } else {
+      if (rounds_ <= least)
+        add<0, least>(pass, own, sum);
+      else if (rounds_ == least + 1)
+        add<0, least + 1>(pass, own, sum);
+      else
+        add<0, least + 2>(pass, own, sum);
+      add_groups<least + 2, 2>(pass, own, sum);
+    }
     for (int k = kKept; k < rounds_; ++k) {
       const int e = lane_ + k * lanes;
       const int j = e < n_ ? lists_.entry(i_, e, overflow_) : lists_.far;
@@ -125,12 +119,14 @@ class KeptEntries {
 #pragma unroll
     for (int j = 0; j < n; ++j) pass.add(sum, own, other[j]);
   }
-  template <int k, class Pass, class Own, class Sum>
-  __device__ __forceinline__ void add_twos(const Pass& pass, const Own& own, Sum& sum) const {
+  /// All from k on, n at a time.
+  template <int k, int n, class Pass, class Own, class Sum>
+  __device__ __forceinline__ void add_groups(const Pass& pass, const Own& own, Sum& sum) const {
     if constexpr (k < kKept) {
+      static_assert(k + n <= kKept);
       if (k >= rounds_) return;
-      add<k, 2>(pass, own, sum);
-      add_twos<k + 2>(pass, own, sum);
+      add<k, n>(pass, own, sum);
+      add_groups<k + n, n>(pass, own, sum);
     }
   }
 

@@ -46,11 +46,32 @@ __global__ void __launch_bounds__(kBlock) item_kernel(Rows rows, Pass pass) {
   if (i < n && !leaves_out(rows, i)) pass(i);
 }
 
+/// A neighbor sum in float and three dimensions that gathers two rows of a neighbor, where only
+/// walls are near. It has 40 registers, so that a multiprocessor runs 1536 threads, in blocks of up
+/// to 768: adjacent particles had better be on one multiprocessor, which has their neighbors in its
+/// cache.
+template <class Pass>
+constexpr bool kIsWide = false;
+#ifndef PBF_PINNED
+template <class Pass>
+requires requires(Pass p) { p.boundary; }
+constexpr bool kIsWide<Pass> = Pass::D == 3 &&
+                               std::is_same_v<decltype(Pass::boundary), Box<float>> &&
+                               sizeof(std::declval<const Pass&>().other(Neighbor{})) > 16;
+#endif
+/// Threads of a block, for n of one particle each.
+template <class Pass>
+int pair_block(int n) {
+  if (!kIsWide<Pass> || n < 100000) return kBlock;
+  return n < 400000 ? 512 : 768;
+}
 template <class Rows, class Pass>
-__global__ void __launch_bounds__(kBlock) pair_kernel(Rows rows, Pass pass) {
+__global__ void __launch_bounds__(kIsWide<Pass> ? 768 : kBlock, kIsWide<Pass> ? 2 : 1)
+    pair_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
   wait_for_previous();
-  const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
+  const int block = kIsWide<Pass> ? blockDim.x : kBlock;
+  const int i = first_of(rows) + blockIdx.x * block + threadIdx.x;
   if (i < n && !leaves_out(rows, i)) sum_over_words(pass, i);
 }
 

@@ -98,7 +98,7 @@ struct ListPass : ListSearch<Real, D, unchanged> {
     int4* overflow = nullptr;
     if (last && all > 4 * capacity.first) overflow = take_overflow(i);
     overflow = cub::ShuffleIndex<of_list>(overflow, of_list - 1, kWarp);
-    const List list{words + i, overflow};
+    const List list{i, overflow};
 #pragma unroll
     for (int r = 0; r < most; ++r) place = write_row(i, xi, row[r], place, list);
     const int limit = capacity.first + (overflow ? capacity.overflow : 0);
@@ -155,8 +155,8 @@ struct ListPass : ListSearch<Real, D, unchanged> {
     __syncwarp();
     const int limit = capacity.first + (overflow ? capacity.overflow : 0);
     for (int k = lane; k < min((all + 3) >> 2, limit); k += of_list)
-      *(k < capacity.first ? words + i + std::size_t(k) * stride
-                           : overflow + (k - capacity.first)) = reinterpret_cast<int4*>(stage)[k];
+      *word_of_list(words, stride, capacity.first, overflow, i, k) =
+          reinterpret_cast<int4*>(stage)[k];
     if (valid && lane == 0) finish(i, all, limit);
     return {min(all, 4 * limit), overflow};
   }
@@ -168,9 +168,8 @@ struct ListPass : ListSearch<Real, D, unchanged> {
     const MadeList list = by_lanes<of_list>(i, lane, valid);
     __syncwarp();
     for (int e = lane; e < min(list.count, staged); e += of_list) {
-      const int k = e >> 2;
-      const int4* word = k < capacity.first ? words + i + std::size_t(k) * stride
-                                            : list.overflow + (k - capacity.first);
+      const int4* word =
+          word_of_list<const int4>(words, stride, capacity.first, list.overflow, i, e >> 2);
       stage[e] = reinterpret_cast<const int*>(word)[e & 3];
     }
     return list;
@@ -192,9 +191,10 @@ struct ListPass : ListSearch<Real, D, unchanged> {
       r.bits = bits;
     });
   }
-  /// The memory of a list; overflow is null if it needs none or none is left.
+  /// The list of particle i; overflow is null if it needs none or none is left.
   struct List {
-    int4 *words, *overflow;
+    int i;
+    int4* overflow;
   };
   __device__ __forceinline__ int write_bits(int first, unsigned bits, int place,
                                             const List& list) const {
@@ -213,12 +213,10 @@ struct ListPass : ListSearch<Real, D, unchanged> {
     return place;
   }
   __device__ __forceinline__ void put(const List& list, int at, int j) const {
-    const int k = at >> 2;
-    int4* word = k < capacity.first ? list.words + std::size_t(k) * stride
-                 : list.overflow && k < capacity.first + capacity.overflow
-                     ? list.overflow + (k - capacity.first)
-                     : nullptr;
-    if (word) reinterpret_cast<int*>(word)[at & 3] = j;
+    const int k = at >> 2, limit = capacity.first + (list.overflow ? capacity.overflow : 0);
+    if (k >= limit) return;
+    int4* word = word_of_list(words, stride, capacity.first, list.overflow, list.i, k);
+    reinterpret_cast<int*>(word)[at & 3] = j;
   }
   /// Null when there is none left.
   __device__ __forceinline__ int4* take_overflow(int i) const {

@@ -10,15 +10,14 @@ namespace pbf::PBF_VARIANT {
 static_assert((kSortBins + 1 + kSortParticles + 32) * sizeof(int) <= 48 * 1024,
               "counts, ids and warp_sum in one block");
 
-/// Also clears the counts for the next sort, and the number of used overflows.
+/// Also clears the number of used overflows.
 template <class Rows>
 __global__ void __launch_bounds__(kBlock)
-    place_kernel(Rows rows, PlacePass pass, int* count, ListState* lists) {
+    place_kernel(Rows rows, PlacePass pass, ListState* lists) {
   const int n = end_of(rows);
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
-  for (int b = pass.bins.begin + i; b < pass.bins.end; b += gridDim.x * kBlock) count[b] = 0;
   if (i == 0) lists->used = 0;
 }
 
@@ -92,10 +91,7 @@ __global__ void __launch_bounds__(kSortThreads)
 #pragma unroll
   for (int r = 0; r < most; ++r) {
     if (bin[r] < 0) continue;
-    const int end = count[bin[r] + 1];
-    int place = count[bin[r]];
-    for (int m = place; m < end; ++m) place += slot[m] < id[r] ? 1 : 0;
-    order.gather(t + r * kSortThreads, place);
+    order.gather(t + r * kSortThreads, place_in_bin(slot, count[bin[r]], count[bin[r] + 1], id[r]));
   }
 }
 

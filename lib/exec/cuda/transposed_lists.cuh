@@ -30,6 +30,14 @@ __device__ __forceinline__ int largest_of_warp(int n) {
 #endif
 }
 
+/// Where word k of the list of particle i is: its first words are `stride` apart, the others in its
+/// overflow.
+template <class Word>
+__device__ __forceinline__ Word* word_of_list(Word* words, int stride, int first, Word* overflow,
+                                              int i, int k) {
+  return k < first ? words + i + std::size_t(k) * stride : overflow + (k - first);
+}
+
 /// Neighbor lists of the GPU. Unused entries of the last word are the far particle (index n), which
 /// contributes zero to every sum, so entries need no test.
 struct TransposedLists {
@@ -59,29 +67,46 @@ struct TransposedLists {
       f(Neighbor{j.w});
     }
   }
-  /// f(word) for every word of i, or for the share of one of `lanes` threads. Each is loaded while
-  /// the neighbors in the one before are added.
+  /// f(word) for every word of i. Each is loaded while the neighbors in the one before are added.
   template <class F>
-  __device__ __forceinline__ void for_each_word(int i, F&& f, int lane = 0, int lanes = 1) const {
+  __device__ __forceinline__ void for_each_word(int i, F&& f) const {
     const int n = (count[i] + 3) >> 2, inner = min(n, first);
-    const int4* w = words + i + std::size_t(lane) * stride;
-    int k = lane;
+    const int4* w = words + i;
+    int k = 0;
     int4 next;
     if (k < inner) next = load_once(w);
-    for (; k < inner; k += lanes) {
+    for (; k < inner; ++k) {
       const int4 now = next;
-      w += std::size_t(lanes) * stride;
-      if (k + lanes < inner) next = load_once(w);
+      w += stride;
+      if (k + 1 < inner) next = load_once(w);
       f(now);
     }
     if (k >= n) return;
-    w = overflows + std::size_t(overflow_of[i]) * overflow + (k - first);
-    for (; k < n; k += lanes, w += lanes) f(load_once(w));
+    w = overflows + std::size_t(overflow_of[i]) * overflow;
+    for (; k < n; ++k, ++w) f(load_once(w));
+  }
+  /// f(entry, ...) for four entries at a time, the share of one of `lanes` threads: lane, lane +
+  /// lanes, ..., so that the shares differ by at most one entry. Padded with the far particle.
+  template <int lanes, class F>
+  __device__ __forceinline__ void for_each_share(int i, int lane, F&& f) const {
+    const int n = count[i];
+    const int4* o = overflow_words(i, n);
+    const auto some = [&](int e) { return e < n ? entry(i, e, o) : far; };
+    for (int e = lane; e < n; e += 4 * lanes)
+      f(int4{some(e), some(e + lanes), some(e + 2 * lanes), some(e + 3 * lanes)});
   }
   /// Word k of particle i.
   __device__ __forceinline__ int4 word(int i, int k) const {
-    return load_once(k < first ? words + i + std::size_t(k) * stride
-                               : overflows + std::size_t(overflow_of[i]) * overflow + (k - first));
+    return load_once(word_of_list(words, stride, first, overflow_words(i, 4 * k + 1), i, k));
+  }
+  /// Null if a list of n entries has none.
+  __device__ __forceinline__ const int4* overflow_words(int i, int n) const {
+    return n > 4 * first ? overflows + std::size_t(overflow_of[i]) * overflow : nullptr;
+  }
+  /// o: overflow_words(i).
+  __device__ __forceinline__ int entry(int i, int e, const int4* o) const {
+    const int4* word = word_of_list(words, stride, first, o, i, e >> 2);
+    return reinterpret_cast<const int*>(word)[e & 3];
   }
   __device__ __forceinline__ int size(int i) const { return count[i]; }
 };
@@ -108,7 +133,10 @@ __device__ __forceinline__ void sum_over_words(const Pass& pass, int i) {
 }
 
 /// Several threads share the neighbors of one particle: for few particles, where a pass waits for
-/// memory rather than for arithmetic. Their sums are added in a tree of fixed shape.
+/// memory rather than for arithmetic. Their sums are added in a tree of fixed shape. Shares and
+/// tree are those of turns.cuh. In double or two dimensions a thread adds words, neighbor by
+/// neighbor: there are too few registers, or too few neighbors, for four at a time
+/// (kernels/PERFORMANCE.md).
 template <int lanes, class Pass>
 __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, int thread, int n) {
   const int i = thread / lanes, lane = thread % lanes;
@@ -117,8 +145,15 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
   typename Pass::Sum sum{};
   if (valid) {
     own = pass.own(i);
-    pass.lists.for_each_word(
-        i, [&](const int4& word) { add_word(pass, sum, own, word); }, lane, lanes);
+    if constexpr (sizeof(pass.p.dt) == 4 && Pass::D == 3 && lanes > 2)
+      pass.lists.template for_each_share<lanes>(
+          i, lane, [&](const int4& four) { add_word(pass, sum, own, four); });
+    else if constexpr (sizeof(pass.p.dt) == 4 && Pass::D == 3)
+      for (int k = lane; 4 * k < pass.lists.size(i); k += lanes)
+        add_word(pass, sum, own, pass.lists.word(i, k));
+    else
+      pass.lists.for_each(
+          i, [&](Neighbor j) { pass.add(sum, own, pass.other(j)); }, lane, lanes);
   }
   sum.each([](auto& x) {
 #pragma unroll

@@ -1,5 +1,6 @@
-// Lists, lambda and delta of all iterations in one kernel, for few particles: there a pass takes
-// less time than its launch and the loads of its own row and list, which here stay in registers.
+// Lists, lambda and delta of all iterations, and XSPH behind them, in one kernel, for few
+// particles: there a pass takes less time than its launch and the loads of its own row and list,
+// which here stay in registers.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -53,27 +54,29 @@ class GridBarrier {
   unsigned side_;
 };
 
-/// What a launch does: all of it, or lambda or delta alone, with the same bits.
+/// What a launch does: all of it, without XSPH if another pass comes first, or lambda or delta
+/// alone, with the same bits.
 struct TurnParts {
-  bool lists, lambda, delta;
+  bool lists, lambda, delta, xsph;
 };
 
-template <class Lambda, class Delta>
+template <class Lambda, class Delta, class Xsph>
 struct Turns {
   TurnParts parts;
   ListPass<float, 3, false> lists;
   Lambda lambda;
   Delta delta;
+  Xsph xsph;
+  Arrivals<false> arrivals;  ///< of the bins that XSPH finds; without `count` for a later pass
   int times;
   float factor[kMostTurns];  ///< omega of each iteration
   unsigned* arrived;         ///< of GridBarrier
 };
 
-/// One pass for the particle that `lanes` threads share; all of them get `result`, which it writes.
+/// One pass for the particle that `lanes` threads share. The first of them writes the results.
 template <int lanes, class Pass>
 __device__ __forceinline__ void take_turn(const Pass& pass, const KeptEntries<lanes>& entries,
-                                          KeptRow& kept, Vec4<float>& result, int lane,
-                                          bool valid) {
+                                          KeptRow& kept, int lane, bool valid) {
   const auto own = pass.own(Kept{&kept});
   typename Pass::Sum sum{};
   entries.add_to(pass, own, sum);
@@ -82,16 +85,20 @@ __device__ __forceinline__ void take_turn(const Pass& pass, const KeptEntries<la
     for (int half = lanes / 2; half > 0; half /= 2) x += __shfl_xor_sync(0xffffffffu, x, half);
   });
   if (valid && lane == 0) pass.finish(Kept{&kept}, own, sum);
-  const auto of_first = [](float x) { return __shfl_sync(0xffffffffu, x, 0, lanes); };
-  result = {of_first(result.x), of_first(result.y), of_first(result.z), of_first(result.w)};
+}
+/// That of the first of `lanes` threads.
+template <int lanes>
+__device__ __forceinline__ Vec4<float> of_first(const Vec4<float>& mine) {
+  const auto get = [](float x) { return __shfl_sync(0xffffffffu, x, 0, lanes); };
+  return {get(mine.x), get(mine.y), get(mine.z), get(mine.w)};
 }
 
 /// Of shared memory for a list in the making; one more than needed, against bank conflicts.
 constexpr int kStageWords = ListPass<float, 3>::staged / 4 + 1;
 
-template <int lanes, class Lambda, class Delta>
+template <int lanes, class Lambda, class Delta, class Xsph>
 __global__ void __launch_bounds__(kTurnThreads, 1)
-    turns_kernel(RowRange rows, const __grid_constant__ Turns<Lambda, Delta> t) {
+    turns_kernel(RowRange rows, const __grid_constant__ Turns<Lambda, Delta, Xsph> t) {
   extern __shared__ int4 stages[];
   const int n = end_of(rows);
   wait_for_previous();
@@ -116,26 +123,36 @@ __global__ void __launch_bounds__(kTurnThreads, 1)
   kept.i = i;
   kept.position_rows = t.lambda.position.rows();
   kept.velocity_rows = t.lambda.velocity.rows();
+  kept.direction_rows = t.delta.position.rows();
   if (valid) {
     kept.position = kept.position_rows[i];
     kept.velocity = kept.velocity_rows[i];
     if (!t.parts.lambda) {
-      kept.direction = t.delta.position.rows()[i];
+      kept.direction = kept.direction_rows[i];
       kept.density = t.delta.density.rows()[i];
     }
   }
   for (int k = 0; k < t.times; ++k) {
     if (k > 0) barrier.wait();
-    if (t.parts.lambda) take_turn(t.lambda, entries, kept, kept.direction, lane, valid);
+    if (t.parts.lambda) {
+      take_turn(t.lambda, entries, kept, lane, valid);
+      kept.direction = of_first<lanes>(kept.direction);
+    }
     if (!t.parts.delta) break;
     if (all) barrier.wait();
     Delta delta = t.delta;
     delta.p.sor = t.factor[k];
-    take_turn(delta, entries, kept, kept.position, lane, valid);
+    take_turn(delta, entries, kept, lane, valid);
+    kept.position = of_first<lanes>(kept.position);
   }
-  if (!valid || lane != 0) return;
-  if (t.parts.lambda) t.lambda.density.rows()[i] = kept.density;
-  if (t.parts.delta) t.delta.velocity.rows()[i] = kept.velocity;
+  const bool writes = valid && lane == 0;
+  if (writes && t.parts.lambda) t.lambda.density.rows()[i] = kept.density;
+  if (writes && t.parts.delta) t.delta.velocity.rows()[i] = kept.velocity;
+  if (!t.parts.xsph) return;
+  kept.velocity = of_first<lanes>(kept.velocity);
+  barrier.wait();
+  take_turn(t.xsph, entries, kept, lane, valid);
+  if (writes && t.arrivals.count) t.arrivals.add(t.xsph.bin, i);
 }
 
 /// Launches turns_kernel for all iterations where all its blocks can run at the same time.
@@ -151,30 +168,36 @@ class TurnLauncher {
     arrived_.resize(1);
     PBF_CUDA_CHECK(cudaMemsetAsync(arrived_.data(), 0, arrived_.bytes(), stream));
   }
-  /// Runs `lambda` and `delta` in turns in one launch, once for each of `factors` (omega), and
-  /// before that makes `lists` if `makes_lists`. total: particles of the whole scene. False if not
-  /// all blocks can run at the same time; then nothing is launched. Not where solvers share a
+  /// Whether all blocks for so many rows can run at the same time. Not where solvers share a
   /// process and a device either: each would wait with all of it, while kernels of single passes
-  /// run beside each other.
-  template <class Lambda, class Delta>
-  bool all(Launcher& launcher, std::int64_t total, const RowRange& rows, bool makes_lists,
-           const ListPass<float, 3, false>& lists, const Lambda& lambda, const Delta& delta,
-           std::span<const float> factors) {
-    Turns<Lambda, Delta> t{{makes_lists, true, true}, lists, lambda,         delta,
-                           int(factors.size()),       {},    arrived_.data()};
-    std::copy(factors.begin(), factors.end(), t.factor);
-    bool taken = false;
-    with_turn_lanes(total, [&](auto lanes) { taken = start<lanes>(launcher, rows, t); });
-    return taken;
-  }
-  /// `lambda`, or else `delta`, alone, with the bits of all().
-  template <class Lambda, class Delta>
-  void one(Launcher& launcher, std::int64_t total, const RowRange& rows, bool is_lambda,
-           const Lambda& lambda, const Delta& delta) {
-    const Turns<Lambda, Delta> t{
-        {false, is_lambda, !is_lambda}, {}, lambda, delta, 1, {delta.p.sor}, nullptr};
+  /// run beside each other. total: particles of the whole scene.
+  template <class Lambda, class Delta, class Xsph>
+  bool fits(std::int64_t total, const RowRange& rows) {
+    bool all = false;
     with_turn_lanes(total, [&](auto lanes) {
-      launcher.start(turns_kernel<lanes, Lambda, Delta>, lanes * most(rows), kBlock, 0, rows, t);
+      all = cooperative_ && launchers == 1 &&
+            fits<Lambda, Delta, Xsph>(lanes, blocks_for(lanes, rows));
+    });
+    return all;
+  }
+  /// All turns in one launch, after fits().
+  template <class Lambda, class Delta, class Xsph>
+  void all(Launcher& launcher, std::int64_t total, const RowRange& rows,
+           Turns<Lambda, Delta, Xsph> turns) {
+    turns.arrived = arrived_.data();
+    with_turn_lanes(total, [&](auto lanes) {
+      const auto [blocks, threads] = blocks_for(lanes, rows);
+      launcher.start_together(turns_kernel<lanes, Lambda, Delta, Xsph>, blocks, threads,
+                              shared_for(lanes, threads), rows, turns);
+    });
+  }
+  /// Lambda or delta alone, with the bits of all().
+  template <class Lambda, class Delta, class Xsph>
+  void one(Launcher& launcher, std::int64_t total, const RowRange& rows,
+           const Turns<Lambda, Delta, Xsph>& turns) {
+    with_turn_lanes(total, [&](auto lanes) {
+      launcher.start(turns_kernel<lanes, Lambda, Delta, Xsph>, lanes * most(rows), kBlock, 0, rows,
+                     turns);
     });
   }
 
@@ -185,27 +208,29 @@ class TurnLauncher {
       if constexpr (lanes >= 4) f(lanes);  // kMostInTurns
     });
   }
-  template <int lanes, class Lambda, class Delta>
-  bool start(Launcher& launcher, const RowRange& rows, const Turns<Lambda, Delta>& turns) {
+  struct Blocks {
+    int count, threads;
+  };
+  Blocks blocks_for(int lanes, const RowRange& rows) const {
     const std::int64_t threads = std::int64_t(lanes) * most(rows);
     const std::int64_t each = (threads + processors_ - 1) / processors_;
     const int block = int(std::max<std::int64_t>((each + 31) / 32 * 32, kBlock));
-    if (!cooperative_ || block > kTurnThreads || launchers > 1) return false;
-    const auto kernel = &turns_kernel<lanes, Lambda, Delta>;
-    const int blocks = int((threads + block - 1) / block);
-    const std::size_t shared = shared_for(lanes, block);
+    return {int((threads + block - 1) / block), block};
+  }
+  template <class Lambda, class Delta, class Xsph, class Lanes>
+  bool fits(Lanes lanes, const Blocks& blocks) {
+    if (blocks.threads > kTurnThreads) return false;
+    const auto kernel = &turns_kernel<lanes, Lambda, Delta, Xsph>;
     const auto [fits, is_new] =
-        fits_.try_emplace({reinterpret_cast<const void*>(kernel), block}, 0);
+        fits_.try_emplace({reinterpret_cast<const void*>(kernel), blocks.threads}, 0);
     if (is_new) {
       // The same number for all solvers of a process: it belongs to the kernel.
       PBF_CUDA_CHECK(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                           int(shared_for(lanes, kTurnThreads))));
-      PBF_CUDA_CHECK(
-          cudaOccupancyMaxActiveBlocksPerMultiprocessor(&fits->second, kernel, block, shared));
+      PBF_CUDA_CHECK(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
+          &fits->second, kernel, blocks.threads, shared_for(lanes, blocks.threads)));
     }
-    if (std::int64_t(fits->second) * processors_ < blocks) return false;
-    launcher.start_together(kernel, blocks, block, shared, rows, turns);
-    return true;
+    return std::int64_t(fits->second) * processors_ >= blocks.count;
   }
 
   static std::size_t shared_for(int lanes, int block) {

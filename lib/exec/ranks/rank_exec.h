@@ -46,7 +46,7 @@ class RankExec : public Base {
     }
   }
 
-  using Base::items, Base::pairs, Base::repeat_while;
+  using Base::items, Base::pairs, Base::repeat_while, Base::build_lists;
   template <ItemPass Pass>
   void items(const Rows& rows, const Pass& pass) {
     over(rows, [&](const RowRange& r) { Base::items(r, pass); });
@@ -55,15 +55,16 @@ class RankExec : public Base {
   void pairs(const Rows& rows, const Pass& pass) {
     over(rows, [&](const RowRange& r) { Base::pairs(r, pass); });
   }
-  /// Rows near solids are listed with those of ghosts.
+  /// Rows near solids are listed with those of ghosts. Without ranks all are own: one form of such
+  /// a pass, since a compiler takes long for it.
   template <ItemPass Pass>
   void listed(const int* count, int most, const Pass& pass) {
-    if constexpr (requires { pass.row(0); })
-      if (rows_)
-        return over({rows_->first(), rows_->last()}, [&](const RowRange& r) {
-          Base::listed(count, most, OwnOf<Pass>{pass, r});
-        });
-    Base::listed(count, most, pass);
+    if constexpr (requires { pass.row(0); }) {
+      const auto of = [&](const RowRange& r) { Base::listed(count, most, OwnOf<Pass>{pass, r}); };
+      rows_ ? over({rows_->first(), rows_->last()}, of) : of({0, most});
+    } else {
+      Base::listed(count, most, pass);
+    }
   }
   template <ItemPass Pass>
   void all_listed(const int* count, int most, const Pass& pass) {
@@ -146,7 +147,6 @@ class RankExec : public Base {
   void turn(const Rows& rows, const auto&... of) {
     over(rows, [&](const RowRange& r) { Base::turn(r, of...); });
   }
-  using Base::build_lists;
   template <class Real>
   Lists build_lists(const Rows& rows, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {

@@ -41,6 +41,13 @@ void with_tensile(const Scene& s, F&& f) {
   f(std::integral_constant<TensilePower, TensilePower::any>{});
 }
 
+/// The same for passes in turns (lib/program/turns.h).
+template <class F>
+void with_turn_tensile(const Scene& s, F&& f) {
+  has_tensile(s) ? f(std::integral_constant<TensilePower, TensilePower::fourth>{})
+                 : f(std::integral_constant<TensilePower, TensilePower::none>{});
+}
+
 /// free: with moves_on in second order.
 template <class G>
 void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<typename G::Real>* free,
@@ -52,8 +59,14 @@ void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<type
         const DissipationBook damping = moves_on ? damping_book(c) : DissipationBook{};
         with_order<S, typename G::Real>(c.scene, free, damping, [&](const auto& order) {
           each_then_near<true>(c, [&](const auto& boundary) {
-            return delta_pass<S, decltype(tensile)::value>(c, c.lists(), density, moves_on, coarse,
-                                                           order, boundary);
+            // The pass for near rows sums over no pairs but coincident ones, so it has one form:
+            // nvcc takes 5 s for each.
+            constexpr bool near =
+                std::is_same_v<std::decay_t<decltype(boundary)>, SolidBoundary<typename G::Real>>;
+            return delta_pass < S,
+                   near ? TensilePower::any
+                        : decltype(tensile)::value >
+                              (c, c.lists(), density, moves_on, coarse, order, boundary);
           });
         });
       });

@@ -81,15 +81,23 @@ using GatherNeeds =
           If<changes_rows, Looks<field::row_state>, Places<field::row_state>>>;
 
 /// Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
-/// that `first` leaves out. Then `gather` puts the particles into the order of bins.
+/// that `first` leaves out. Then `gather` puts the particles into the order of bins. If `first` is
+/// launched with other passes (lib/solver/turns.h), particles neither come nor go.
 template <class G, class First, class Gather, class Listed>
 void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
                const Listed& listed) {
-  const int* rows = c.exec.template sort_by_bin<G::changes_rows>(
-      c.booked(stage), first, listed, c.rows(), bin_count(c.p), c[other<field::id>], c.sort_order(),
-      c[field::bin_start], gather);
-  if constexpr (G::changes_rows)
-    if (changes_rows(c.scene)) c.items(1, TakeRowsPass{rows, c[field::row_state]});
+  const auto sort = [&]<bool leave>(std::bool_constant<leave>, const auto& n) {
+    return c.exec.template sort_by_bin<leave>(c.booked(stage), first, listed, n, bin_count(c.p),
+                                              c[other<field::id>], c.sort_order(),
+                                              c[field::bin_start], gather);
+  };
+  if constexpr (requires { first.launch; }) {
+    sort(std::false_type(), c.capacity());
+  } else {
+    const int* rows = sort(std::bool_constant<G::changes_rows>(), c.rows());
+    if constexpr (G::changes_rows)
+      if (changes_rows(c.scene)) c.items(1, TakeRowsPass{rows, c[field::row_state]});
+  }
 }
 /// velocity, velocity_out: the arrays from which and into which the pass gathers. counts: null if
 /// particles do not move. order: of the rows before the sort.

@@ -34,18 +34,18 @@ inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
 /// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for
 /// the particles' bins in the next update, or null. free: field::free_velocity, with bin.
-template <class G, class Rows, class Use>
-void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
-               OwnRows<Rows> velocity_out, std::type_identity_t<Rows>* free, int* bin,
-               const Use& use) {
+template <class G, class Lists, class Rows, class Use>
+void with_xsph(const G& c, const Lists& lists, GatheredRows<Rows> position,
+               GatheredRows<Rows> velocity, OwnRows<Rows> velocity_out,
+               std::type_identity_t<Rows>* free, int* bin, const Use& use) {
   using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
     const DissipationBook damping = bin ? damping_book(c) : DissipationBook{};
     with_order<decltype(s)::value, Real>(c.scene, free, damping, [&](const auto& order) {
       with_far_boundary(c, [&](const auto& boundary) {
-        use(XsphPass<Real, typename G::Lists, decltype(s)::value, std::decay_t<decltype(order)>,
+        use(XsphPass<Real, Lists, decltype(s)::value, std::decay_t<decltype(order)>,
                      std::decay_t<decltype(boundary)>>{
-            c.p, boundary, c.lists(), position, velocity, velocity_out, bin,
+            c.p, boundary, lists, position, velocity, velocity_out, bin,
             viscous_book<Dissipation::viscosity>(c), order});
       });
     });
@@ -58,9 +58,13 @@ struct Xsph {
   using Needs =
       pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<other<field::velocity>>,
                  UsesLists, Writes<field::velocity>, Adds<field::dissipation>>;
+  /// Calls use(pass).
+  static void with(const auto& c, const auto& lists, const auto& use) {
+    with_xsph(c, lists, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
+              nullptr, use);
+  }
   static void launch(const auto& c) {
-    with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
-              nullptr, [&](const auto& pass) { c.pairs(pass); });
+    with(c, c.lists(), [&](const auto& pass) { c.pairs(pass); });
   }
 };
 
@@ -72,14 +76,19 @@ struct XsphPredictSort {
   using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
                            Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>,
                            Adds<field::dissipation>>;
+  /// Calls use(pass, sort). sort(first): sorts after `first`, which is the pass or launches it.
   template <class G>
-  static void launch(const G& c) {
+  static void with(const G& c, const auto& lists, const auto& use) {
     using Rows = Vec4<typename G::Real>;
     Rows *position = c[other<field::position>], *from = c[field::velocity],
          *to = c[other<field::velocity>];
-    with_xsph(c, GatheredRows<Rows>(position), GatheredRows<Rows>(from), OwnRows<Rows>(to),
-              c.declared(other<field::free_velocity>), c[field::bin].rows(),
-              [&](const auto& pass) { sort_predicted(c, "xsph", pass, to, from); });
+    with_xsph(c, lists, GatheredRows<Rows>(position), GatheredRows<Rows>(from), OwnRows<Rows>(to),
+              c.declared(other<field::free_velocity>), c[field::bin].rows(), [&](const auto& pass) {
+                use(pass, [&](const auto& first) { sort_predicted(c, "xsph", first, to, from); });
+              });
+  }
+  static void launch(const auto& c) {
+    with(c, c.lists(), [](const auto& pass, const auto& sort) { sort(pass); });
   }
 };
 
