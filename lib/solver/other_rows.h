@@ -17,8 +17,10 @@ constexpr bool has_ranks = requires(C& c) {
 
 template <class C>
 bool has_other_ranks([[maybe_unused]] C& c) {
-  if constexpr (has_ranks<C>) return c.exec.rows() != nullptr;
-  return false;
+  if constexpr (has_ranks<C>)
+    return c.exec.rows() != nullptr;
+  else
+    return false;
 }
 
 /// Before the arrays are made.
