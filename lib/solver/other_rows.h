@@ -33,8 +33,7 @@ void begin_rows(C& c, const InternalState<typename C::Real>& first) {
 /// Whether no pass of an update may be fused with one of the next: rows come and go between them.
 template <class C>
 bool is_unfused(C& c, const Program& program) {
-  if constexpr (has_ranks<C>)
-    if (c.exec.rows()) return unfused_on_ranks(program, c.scene);
+  if (has_other_ranks(c)) return unfused_on_ranks(program, c.scene);
   return c.images() != nullptr;
 }
 /// Whether the updates from now on are repeated if rows were lost.

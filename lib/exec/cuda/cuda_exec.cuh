@@ -211,16 +211,10 @@ class CudaExec : public CudaPasses {
   template <class Lambda, class Delta, class Xsph>
   void turn(const RowRange& rows, bool is_lambda, const Lambda& lambda, const Delta& delta,
             const Xsph& none) {
-    turns_.one(launcher_, total_, rows,
-               Turns<Lambda, Delta, Xsph>{{false, is_lambda, !is_lambda, false},
-                                          {},
-                                          lambda,
-                                          delta,
-                                          none,
-                                          {},
-                                          1,
-                                          {delta.p.sor},
-                                          nullptr});
+    Turns<Lambda, Delta, Xsph> t{{false, is_lambda, !is_lambda, false}, {}, lambda, delta, none};
+    t.times = 1;
+    t.factor[0] = delta.p.sor;
+    turns_.one(launcher_, total_, rows, t);
   }
 #endif
 

@@ -85,8 +85,8 @@ struct TransposedLists {
     w = overflows + std::size_t(overflow_of[i]) * overflow;
     for (; k < n; ++k, ++w) f(load_once(w));
   }
-  /// f(entry, ...) for four entries at a time, the share of one of `lanes` threads: lane, lane +
-  /// lanes, ..., so that the shares differ by at most one entry. Padded with the far particle.
+  /// f(four) for four entries at a time of the share of one of `lanes` threads: lane, lane + lanes,
+  /// ..., so that the shares differ by at most one entry. Padded with the far particle.
   template <int lanes, class F>
   __device__ __forceinline__ void for_each_share(int i, int lane, F&& f) const {
     const int n = count[i];
@@ -133,10 +133,10 @@ __device__ __forceinline__ void sum_over_words(const Pass& pass, int i) {
 }
 
 /// Several threads share the neighbors of one particle: for few particles, where a pass waits for
-/// memory rather than for arithmetic. Their sums are added in a tree of fixed shape. Shares and
-/// tree are those of turns.cuh. In double or two dimensions a thread adds words, neighbor by
-/// neighbor: there are too few registers, or too few neighbors, for four at a time
-/// (kernels/PERFORMANCE.md).
+/// memory rather than for arithmetic. Their sums are added in a tree of fixed shape. In float and
+/// three dimensions, shares and tree of 4 threads and more are those of turns.cuh; 2 threads take
+/// every other word. In double or two dimensions a thread adds the neighbors of its words one by
+/// one: four at a time took longer (kernels/PERFORMANCE.md).
 template <int lanes, class Pass>
 __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, int thread, int n) {
   const int i = thread / lanes, lane = thread % lanes;

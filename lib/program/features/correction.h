@@ -63,10 +63,8 @@ void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<type
             // nvcc takes 5 s for each.
             constexpr bool near =
                 std::is_same_v<std::decay_t<decltype(boundary)>, SolidBoundary<typename G::Real>>;
-            return delta_pass < S,
-                   near ? TensilePower::any
-                        : decltype(tensile)::value >
-                              (c, c.lists(), density, moves_on, coarse, order, boundary);
+            constexpr TensilePower form = near ? TensilePower::any : decltype(tensile)::value;
+            return delta_pass<S, form>(c, c.lists(), density, moves_on, coarse, order, boundary);
           });
         });
       });
