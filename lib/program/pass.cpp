@@ -66,6 +66,13 @@ bool PassInfo::makes_lists() const { return touches(needs, field::lists, kWritin
 bool PassInfo::reorders_rows() const { return touches(needs, field::id, kPlaces); }
 bool PassInfo::over_pairs() const { return touches(needs, field::lists, kReading); }
 
+bool are_independent(const PassInfo& a, const PassInfo& b) {
+  const auto meet = [&](const AccessInfo& use) {
+    return touches(b.needs, *use.field, use.how & kWriting ? ~0u : kWriting);
+  };
+  return a.flips.empty() && b.flips.empty() && std::ranges::none_of(a.needs, meet);
+}
+
 PassInfo described(const PassText& text, std::vector<AccessInfo> declared,
                    std::vector<const FieldInfo*> flips) {
   PassInfo info{text, joined(declared), std::move(declared), std::move(flips), {}};

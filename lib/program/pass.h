@@ -45,6 +45,10 @@ struct PassInfo : PassText {
   bool reorders_rows() const;
 };
 
+/// Whether two passes may run at the same time: neither writes an array that the other one uses,
+/// nor swaps arrays.
+bool are_independent(const PassInfo& a, const PassInfo& b);
+
 /// The description of a pass, with everything that follows from its declarations.
 PassInfo described(const PassText& text, std::vector<AccessInfo> declared,
                    std::vector<const FieldInfo*> flips);

@@ -1,18 +1,21 @@
 // Passes that run while lists are made, where the executor can run launches beside each other: they
-// follow the lists in an update and use none.
+// follow the lists in an update, and by their declarations neither needs the other.
 #pragma once
 
 #include "lib/solver/turns.h"
 
 namespace pbf::PBF_VARIANT {
 
-/// How many passes behind the lists, steps[k], use none, such as those that assign particles to the
-/// cells of levels. They are short, so alone they would mostly wait.
+/// How many passes behind the lists, steps[k], may run beside them, such as those that assign
+/// particles to the cells of levels. They are short, so alone they would mostly wait.
 template <class C>
 std::size_t passes_beside(C& c, const Steps& steps, std::size_t k) {
+  const auto pass = [&](std::size_t n) -> const PassInfo& {
+    return c.plan.program.passes[std::size_t(steps[n].index)];
+  };
   std::size_t end = k + 1;
   while (end < steps.size() && steps[end].kind == ProgramStep::pass &&
-         !c.plan.program.passes[std::size_t(steps[end].index)].over_pairs())
+         are_independent(pass(k), pass(end)))
     ++end;
   return end - k - 1;
 }

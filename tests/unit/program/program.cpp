@@ -227,4 +227,28 @@ TEST_CASE("program: a step without time has lists and iterations alone") {
         "predict");
 }
 
+TEST_CASE("program: passes are independent if neither writes an array that the other one uses") {
+  const Program p =
+      program_of(kStanding, {"solver.levels=on", "viscosity.xsph=0.1", "vorticity.epsilon=0.1"});
+  const auto independent = [&](const std::string& a, const std::string& b) {
+    const auto info = [&](const std::string& name) {
+      for (const PassInfo& pass : p.passes)
+        if (pass.name == name) return pass;
+      FAIL("no pass " << name);
+      return PassInfo();
+    };
+    const bool known = are_independent(info(a), info(b));
+    CHECK(known == are_independent(info(b), info(a)));
+    return known;
+  };
+  CHECK(independent("lists", "near solids"));
+  CHECK(independent("lists", "level cells"));
+  CHECK(independent("xsph", "curl") == false);  // curl reads what xsph writes
+  CHECK(independent("level cells", "level multipliers") == false);
+  CHECK(independent("lists", "density+lambda") == false);  // which uses them
+  CHECK(independent("lists", "predict") == false);         // which moves what is listed
+  CHECK(independent("lists", "lists") == false);
+  CHECK(independent("near solids", "sort") == false);  // which swaps arrays
+}
+
 }  // namespace pbf::scene_test
