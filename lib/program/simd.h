@@ -9,7 +9,8 @@
 #include "kernels/hd.h"
 
 // Attributes of functions for more than the program's baseline; what they call is inlined.
-#if defined(__x86_64__)
+// PBF_NO_AVX leaves these functions out, as on other processors.
+#if defined(__x86_64__) && !defined(PBF_NO_AVX)
 #define PBF_HAS_AVX 1
 #define PBF_AVX2 __attribute__((target("avx2,popcnt")))
 #define PBF_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,popcnt")))
