@@ -243,12 +243,12 @@ TEST_CASE("program: passes are independent if neither writes an array that the o
   };
   CHECK(independent("lists", "near solids"));
   CHECK(independent("lists", "level cells"));
-  CHECK(independent("xsph", "curl") == false);  // curl reads what xsph writes
-  CHECK(independent("level cells", "level multipliers") == false);
-  CHECK(independent("lists", "density+lambda") == false);  // which uses them
-  CHECK(independent("lists", "predict") == false);         // which moves what is listed
-  CHECK(independent("lists", "lists") == false);
-  CHECK(independent("near solids", "sort") == false);  // which swaps arrays
+  CHECK_FALSE(independent("xsph", "curl"));  // curl reads what xsph writes
+  CHECK_FALSE(independent("level cells", "level multipliers"));
+  CHECK_FALSE(independent("lists", "density+lambda"));  // which uses them
+  CHECK_FALSE(independent("lists", "predict"));         // which moves what is listed
+  CHECK_FALSE(independent("lists", "lists"));
+  CHECK_FALSE(independent("near solids", "sort"));  // which swaps arrays
 }
 
 }  // namespace pbf::scene_test
