@@ -15,18 +15,22 @@ PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
 #endif
 }
 
-/// On a device, if all 32 threads of a warp are here with one `place`: the sum of their terms for
+/// On a device, if all threads of a warp that are here have one `place`: the sum of their terms for
 /// the first of them, 0 for the others. Else the term. What is then added to the places is the
-/// same. Many threads that add to one number wait for each other.
+/// same. Many threads that add to one number wait for each other. term: below 2^57.
 PBF_HD std::int64_t sum_of_warp([[maybe_unused]] const void* place, std::int64_t term) {
-#if defined(__CUDA_ARCH__)
-  constexpr unsigned all = 0xffffffffu;
-  if (__activemask() != all) return term;
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  const unsigned here = __activemask();
   int same = 0;
-  __match_all_sync(all, reinterpret_cast<unsigned long long>(place), &same);
+  __match_all_sync(here, reinterpret_cast<unsigned long long>(place), &same);
   if (!same) return term;
-  for (int k = 16; k > 0; k /= 2) term += __shfl_down_sync(all, term, k);
-  return threadIdx.x % 32 == 0 ? term : 0;
+  // In parts, of which 32 fit into 32 bits.
+  constexpr int bits = 26, mask = (1 << bits) - 1;
+  const std::int64_t low = __reduce_add_sync(here, unsigned(term & mask)),
+                     middle = __reduce_add_sync(here, unsigned(term >> bits & mask)),
+                     high = __reduce_add_sync(here, int(term >> 2 * bits));
+  const bool first = (here & ((1u << threadIdx.x % 32) - 1)) == 0;
+  return first ? (high << 2 * bits) + (middle << bits) + low : 0;
 #else
   return term;
 #endif

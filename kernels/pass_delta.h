@@ -42,7 +42,7 @@ struct DeltaPass {
   GatheredRows<Vec4<Real>> position;  ///< of LambdaPass, where directions are taken; w = lambda
   OwnRows<const Real> density;
   GatheredRows<int> id;                   ///< of each row
-  OwnRows<Vec4<Real>> position_out;       ///< out: x*; w: 1/density
+  MovedRows<Real> position_out;           ///< out: x*; w: 1/density
   OwnRows<Vec4<Real>> velocity;           ///< in/out, h/s
   StepCounts* moves_on;                   ///< not null: this pass also predicts the next substep
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove

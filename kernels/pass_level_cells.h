@@ -12,16 +12,21 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// Calls f(y, z, run) for the runs of a cell's particles; y, z: their row of the search grid.
+/// The share of thread `lane` of `of` threads in the particles of a cell: calls f(y, z, run, first,
+/// step) for some of its runs, of which the thread takes particles first, first + step, ... from
+/// the start on; y, z: their row of the search grid. A run is short, and a thread waits for where
+/// it begins, so most threads take different ones.
 template <int D, class F>
-PBF_HD void for_runs(const LevelCells& grid, GridPlace cell, F&& f) {
-  const auto end = [&](int axis) {
-    return 2 * cell[axis] + (cell[axis] + 1 < grid.cells[axis] ? 2 : 3);
-  };
-  const int y0 = D == 2 ? 0 : 2 * cell[1], y1 = D == 2 ? 1 : end(1), z1 = end(2);
-  for (int z = 2 * cell[2]; z < z1; ++z)
-    for (int y = y0; y < y1; ++y)
-      f(y, z, (D == 2 ? z : z * grid.rows(1) + y) * (grid.cells[0] + 1) + cell[0]);
+PBF_HD void for_runs(const LevelCells& grid, GridPlace cell, int lane, int of, F&& f) {
+  constexpr int usual = D == 2 ? 2 : 4;
+  const auto rows = [&](int axis) { return cell[axis] + 1 < grid.cells[axis] ? 2 : 3; };
+  const int along_y = D == 2 ? 1 : rows(1), runs = along_y * rows(2);
+  const int step = of > usual ? of / usual : 1;
+  for (int n = lane / step; n < runs; n += of / step) {
+    const int y = D == 2 ? 0 : 2 * cell[1] + n % along_y, z = 2 * cell[2] + n / along_y;
+    const int run = (D == 2 ? z : z * grid.rows(1) + y) * (grid.cells[0] + 1) + cell[0];
+    f(y, z, run, lane % step, step);
+  }
 }
 
 /// The cell of each particle, and the number of particles in each cell.
@@ -38,21 +43,22 @@ struct LevelHomePass : LevelBrickPass<D> {
   /// Out: the count in kCountUnit; -1 if less than half full, or if an obstacle may reach into it.
   std::int64_t* full;
 
+  static constexpr int lanes = 8;
   using Part = int;
   PBF_HD Part part(GridPlace cell, int lane, int of) const {
     int inside = 0;
     const int c = grid.at(cell);
     const bool last = cell[0] + 1 == grid.cells[0];
-    for_runs<D>(grid, cell, [&](int y, int z, int run) {
+    for_runs<D>(grid, cell, lane, of, [&](int y, int z, int run, int first, int step) {
       int begin = 0, end = 0;
       if (y < p.cells_y && z < p.cells_z) {
         const int row = (z * p.cells_y + y) * p.cells_x;
         begin = bin_start[(row + 4 * cell[0]) * bins_per_cell(D)];
         end = bin_start[(row + (last ? p.cells_x : 4 * cell[0] + 4)) * bins_per_cell(D)];
       }
-      if (lane == 0) run_start[run] = begin;
-      if (lane == 0 && last) run_start[run + 1] = end;
-      for (int i = begin + lane; i < end; i += of) {
+      if (first == 0) run_start[run] = begin;
+      if (first == 0 && last) run_start[run + 1] = end;
+      for (int i = begin + first; i < end; i += step) {
         const bool in = !position || p.boundary.inside(xyz(position[i]));
         home[i] = in ? c : -1;
         inside += in;

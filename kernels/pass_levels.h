@@ -19,16 +19,20 @@ struct LevelSumPass : LevelBrickPass<D> {
   const Real* density;
   std::int64_t* sum;  ///< out, of each cell in kExcessUnit
 
-  static constexpr int lanes = 2;
+  static constexpr int lanes = 2, at_once = 16;  ///< loads that are issued together
   using Part = std::int64_t;
   PBF_HD Part part(GridPlace cell, int lane, int of) const {
     Part mine = 0;
-    for_runs<D>(grid, cell, [&](int, int, int run) {
-      const int first = run_start[run] + lane, end = run_start[run + 1];
-      if (home)
-        for (int i = first; i < end; i += of) mine += home[i] >= 0 ? excess(density[i]) : 0;
-      else
-        for (int i = first; i < end; i += of) mine += excess(density[i]);
+    for_runs<D>(grid, cell, lane, of, [&](int, int, int run, int first, int step) {
+      const int end = run_start[run + 1];
+      for (int i = run_start[run] + first; i < end; i += at_once * step) {
+        Real rho[at_once];
+        for (int k = 0; k < at_once; ++k) {
+          const int j = i + k * step;
+          rho[k] = j < end && (!home || home[j] >= 0) ? density[j] : Real(1);
+        }
+        for (int k = 0; k < at_once; ++k) mine += excess(rho[k]);
+      }
     });
     return mine;
   }

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "kernels/boundary/far_boundary.h"
+#include "kernels/packed_position.h"
 #include "kernels/step_counts.h"
 #include "kernels/time_order.h"
 
@@ -107,18 +108,18 @@ PBF_HD void put_free(const SecondOrder<Real>& order, int i, const Moving<Real>& 
 /// Writes x* of particle i, which had velocity v, and the matching velocities.
 template <class Real, class Push, class Order>
 PBF_HD void put(int i, Vec3<Real> v, const Moving<Real>& m, const Push& push,
-                OwnRows<Vec4<Real>> position, OwnRows<Vec4<Real>> velocity, const Order& order,
+                MovedRows<Real> position, OwnRows<Vec4<Real>> velocity, const Order& order,
                 StepCounts* counts) {
   if (m.fast) count_one(&counts->fast);
   order.damping.add(i, double(dot(v, v)));
-  position[i] = with_w(m.x, m.mark);
+  set_row(position, i, with_w(m.x, m.mark));
   velocity[i] = with_w(m.v, Real(0));
   put_free(order, i, m, push);
 }
 /// The same for particle i at x with velocity v.
 template <class Real, class Order, class Boundary>
 PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                    const Boundary& boundary, OwnRows<Vec4<Real>> position,
+                    const Boundary& boundary, MovedRows<Real> position,
                     OwnRows<Vec4<Real>> velocity, const Order& order, StepCounts* counts) {
   const auto push = carried_push(order, i, v, p);
   const Moving<Real> m = predict_anywhere(i, x, v, push, p, boundary);
@@ -178,7 +179,8 @@ template <class Real, class Boundary, class Order>
 struct MovePass {
   Params<Real> p;
   Boundary boundary;
-  OwnRows<Vec4<Real>> position, velocity;  ///< in/out
+  MovedRows<Real> position;      ///< in/out
+  OwnRows<Vec4<Real>> velocity;  ///< in/out
   StepCounts* counts;
   Order order{};  ///< in/out
   PBF_HD void operator()(int i) const {
@@ -233,7 +235,8 @@ struct GatherPass : Carried {
   Boundary boundary;
   const Vec4<Real>*position, *velocity;
   const int* id;
-  Vec4<Real>*position_out, *velocity_out;
+  MovedRows<Real> position_out;
+  Vec4<Real>* velocity_out;
   int* id_out;
   StepCounts* counts;
   Order order{}, order_out{};
@@ -251,7 +254,7 @@ struct GatherPass : Carried {
       order.damping.add(from, double(dot(v, v)));
     }
     if (m.fast) count_one(&counts->fast);
-    position_out[to] = with_w(m.x, m.mark);
+    set_row(position_out, to, with_w(m.x, m.mark));
     velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];
     this->carry(from, to);

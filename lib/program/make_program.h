@@ -14,10 +14,11 @@ struct PassSet {
   std::vector<LeftOut> without;
   std::vector<PassInfo> infos;
   int (*fused)(int a, int b) = nullptr;  ///< the pass that does the work of a and then b, or -1
+  UpdateShape shape;
   ProgramStep predict, sort, make_lists;
   std::vector<CarriedField> carried_fields;
 };
-Program assembled(const Scene& scene, const UpdateShape& shape, PassSet passes, bool without_time);
+Program assembled(const Scene& scene, PassSet passes, bool without_time);
 
 /// Collects the passes that features add.
 template <class Passes>
@@ -59,14 +60,15 @@ template <class FeatureSet>
 Program make_program_of(const Scene& scene, const UpdateShape& shape, bool without_time = false) {
   using Passes = typename FeatureSet::Passes;
   Builder<Passes> b;
+  b.shape = shape;
   FeatureSet::add(scene, b);
-  b.infos = Passes::infos(scene);
+  b.infos = Passes::infos({scene, shape});
   b.fused = &Passes::fused;
   b.predict = b.step_of(typename FeatureSet::Predict());
   b.sort = b.step_of(typename FeatureSet::Sort());
   b.make_lists = b.step_of(typename FeatureSet::MakeLists());
   b.carried_fields = Passes::carried_fields();
-  return assembled(scene, shape, std::move(b), without_time);
+  return assembled(scene, std::move(b), without_time);
 }
 
 }  // namespace pbf::program_module

@@ -30,6 +30,21 @@ enum class W { any, mark, lambda, inverse_density };
 /// When a pass needs the field.
 enum class When { always, first_iteration };
 
+/// The division of an update, how often its iterations may be repeated, and in which form neighbors
+/// are gathered.
+struct UpdateShape {
+  int substeps = 1, lists_per_update = 1, repeats = 0;
+  bool packed = false;  ///< packs_rows()
+};
+inline bool is_packed(const UpdateShape& shape) { return shape.packed; }
+inline bool is_not_packed(const UpdateShape& shape) { return !shape.packed; }
+
+/// What declarations depend on.
+struct Declarer {
+  const Scene& scene;
+  const UpdateShape& shape;
+};
+
 struct AccessInfo {
   const FieldInfo* field;
   unsigned how;
@@ -46,7 +61,7 @@ template <auto& F, unsigned how_, W w_ = W::any, When when_ = When::always>
 struct Access {
   using Field = std::remove_cvref_t<decltype(F)>;
   static constexpr unsigned how = how_;
-  static void list(const Scene&, std::vector<AccessInfo>& to) {
+  static void list(const Declarer&, std::vector<AccessInfo>& to) {
     to.push_back({&F, how_, w_, when_});
   }
   template <class Asked>
@@ -79,7 +94,7 @@ using Totals = Access<F, kPlaces | kAdds>;
 /// A group of declarations, which may hold further groups.
 template <class... As>
 struct Needs {
-  static void list(const Scene& scene, std::vector<AccessInfo>& to) { (As::list(scene, to), ...); }
+  static void list(const Declarer& of, std::vector<AccessInfo>& to) { (As::list(of, to), ...); }
   template <class Asked>
   static constexpr unsigned how_of() {
     return (0u | ... | As::template how_of<Asked>());
@@ -87,18 +102,26 @@ struct Needs {
   static constexpr bool carries_fields = (false || ... || As::carries_fields);
   static void list_carried(std::vector<CarriedField>& to) { (As::list_carried(to), ...); }
 };
-/// Declarations for scenes for which on(scene) is true.
-template <bool (*on)(const Scene&), class... As>
+/// Declarations for scenes for which on(scene) is true, or on(shape).
+template <auto on, class... As>
 struct If : Needs<As...> {
-  static void list(const Scene& scene, std::vector<AccessInfo>& to) {
-    if (on(scene)) Needs<As...>::list(scene, to);
+  static void list(const Declarer& of, std::vector<AccessInfo>& to) {
+    if (is_on(of)) Needs<As...>::list(of, to);
+  }
+
+ private:
+  static bool is_on(const Declarer& of) {
+    if constexpr (requires { on(of.shape); })
+      return on(of.shape);
+    else
+      return on(of.scene);
   }
 };
 /// Declarations of a fused pass, which does the work of A and then of B for each row. If A writes a
 /// row and B reads the same row, the fused pass need not read it.
 template <class A, class B>
 struct Then : Needs<A, B> {
-  static void list(const Scene& scene, std::vector<AccessInfo>& to);
+  static void list(const Declarer& of, std::vector<AccessInfo>& to);
   template <class Asked>
   static constexpr unsigned how_of() {
     constexpr unsigned a = A::template how_of<Asked>(), b = B::template how_of<Asked>();
@@ -126,10 +149,10 @@ using MakesLists = Writes<field::lists>;
 std::vector<AccessInfo> joined(const std::vector<AccessInfo>& all);
 
 template <class A, class B>
-void Then<A, B>::list(const Scene& scene, std::vector<AccessInfo>& to) {
+void Then<A, B>::list(const Declarer& of, std::vector<AccessInfo>& to) {
   std::vector<AccessInfo> a, b;
-  A::list(scene, a);
-  B::list(scene, b);
+  A::list(of, a);
+  B::list(of, b);
   for (const AccessInfo& x : a) to.push_back(x);
   for (AccessInfo x : b) {
     for (const AccessInfo& before : a)

@@ -53,11 +53,11 @@ bool are_independent(const PassInfo& a, const PassInfo& b);
 PassInfo described(const PassText& text, std::vector<AccessInfo> declared,
                    std::vector<const FieldInfo*> flips);
 
-/// The description of pass P in a scene.
+/// The description of pass P.
 template <class P>
-PassInfo info_of(const Scene& scene) {
+PassInfo info_of(const Declarer& of) {
   std::vector<AccessInfo> declared;
-  P::Needs::list(scene, declared);
+  P::Needs::list(of, declared);
   if constexpr (requires { typename P::Flips; })
     return described(P::text, std::move(declared), P::Flips::list());
   else
@@ -86,7 +86,7 @@ struct PassList {
     while (!same[k]) ++k;
     return k;
   }
-  static std::vector<PassInfo> infos(const Scene& scene) { return {info_of<Ps>(scene)...}; }
+  static std::vector<PassInfo> infos(const Declarer& of) { return {info_of<Ps>(of)...}; }
   static constexpr std::array<PassText, sizeof...(Ps)> texts{Ps::text...};
   /// The carried fields of all passes besides position, velocity and id, in any scene.
   static constexpr bool carries_fields = (false || ... || Ps::Needs::carries_fields);

@@ -12,6 +12,7 @@
 #include "lib/program/axes.h"
 #include "lib/program/calibrate.h"
 #include "lib/program/free_bodies.h"
+#include "lib/program/packed_rows.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
@@ -242,7 +243,7 @@ double run_file_datasets(const Plan& plan, const Scene& scene) {
   return kOtherDatasets + log_columns(plan, scene) + gauge_columns(plan) + has_free_bodies(scene);
 }
 
-UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }
+UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats, packed}; }
 
 Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
@@ -275,6 +276,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
     plan.tolerance = s.solver.tolerance;
     plan.repeats = s.solver.max_iterations / s.solver.iterations - 1;
   }
+  plan.packed = packs_rows(s, plan);
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
   plan.solids = solids_of(s, plan.axes);

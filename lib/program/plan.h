@@ -64,6 +64,7 @@ struct Plan {
   double dissipation_unit = 1;  ///< h^2/s^2 (kernels/dissipation.h); the same for all steps
   LevelPlan levels;
   bool turns = false;                  ///< takes_turns()
+  bool packed = false;                 ///< packs_rows()
   std::vector<Solid<double>> solids;   ///< of obstacles, in internal axes; lib/program/obstacles.h
   std::vector<Solid<double>> casings;  ///< and a bore for each, of emitters; lib/program/emission.h
   GaugePlan gauges;

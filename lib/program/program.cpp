@@ -202,7 +202,8 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   return make_program_of<Features>(scene, shape, without_time);
 }
 
-Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool without_time) {
+Program assembled(const Scene& scene, PassSet b, bool without_time) {
+  const UpdateShape& shape = b.shape;
   Program p;
   p.has_iterations = !b.in_iteration.empty();
   if (without_time)

@@ -64,11 +64,6 @@ std::vector<PassCount> count_passes(const Program& program, const Steps& steps);
 /// The same for an update in the middle of a run.
 std::vector<PassCount> count_passes(const Program& program);
 
-/// The division of an update, and how often its iterations may be repeated.
-struct UpdateShape {
-  int substeps = 1, lists_per_update = 1, repeats = 0;
-};
-
 /// The update of a scene, or its step without time (StepOptions::without_time in lib/solver).
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time = false);
 

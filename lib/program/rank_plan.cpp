@@ -81,6 +81,8 @@ Plan plan_of_rank(const Plan& whole, const Scene& of_rank) {
   Plan plan = make_plan(of_rank, whole.particles, whole.start);
   plan.capacity = of_rank.capacity;  // fewer than all particles
   plan.turns = whole.turns;          // the bits of all ranks together are those of one
+  plan.packed = whole.packed;
+  plan.program = make_program(of_rank, plan.shape());
   plan.memory = plan_memory_of_rank(of_rank, plan);
   return plan;
 }

@@ -116,8 +116,9 @@ template <class P>
 void StepContext<RealType, Exec, FeatureSet>::as_pass(const auto& launch) {
   const auto granted = [&] { launch(Granted<StepContext, P>(*this)); };
   // Only the executor of a test watches the memory that a pass accesses.
-  if constexpr (requires { exec.watched(info_of<P>(scene), arrays(), granted); })
-    exec.watched(info_of<P>(scene), arrays(), granted);
+  const auto info = [&] { return info_of<P>({scene, plan.shape()}); };
+  if constexpr (requires { exec.watched(info(), arrays(), granted); })
+    exec.watched(info(), arrays(), granted);
   else
     granted();
 }

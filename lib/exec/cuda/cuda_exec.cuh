@@ -185,7 +185,8 @@ class CudaExec : public CudaPasses {
   void run_beside(const auto& small, const auto& large) { aside_->beside(launcher_, small, large); }
 
 #ifndef PBF_PINNED
-  using TurnLists = ChangingLists;  ///< for passes of turns() and turn()
+  static constexpr bool packed_rows = true;  ///< has passes of packed rows
+  using TurnLists = ChangingLists;           ///< for passes of turns() and turn()
   Lists prepare_lists(int far) { return lists_.prepare(far); }  ///< those that turns() makes
   /// Whether turns() can run these passes in one launch. Not if an update is timed by stages.
   template <class Lambda, class Delta, class Xsph>

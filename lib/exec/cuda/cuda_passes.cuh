@@ -22,12 +22,18 @@ class CudaPasses : public CudaSums {
   /// of the whole scene, not from those here.
   template <class Rows, PairPass Pass>
   void pairs(const Rows& n, const Pass& pass) {
-    with_lanes<Pass::D>(total_, [&](auto lanes) {
-      if constexpr (lanes == 1)
-        launch(pair_kernel<Rows, Pass>, most(n), pair_block<Pass>(most(n)), 0, n, pass);
-      else
-        launch(lanes_kernel<lanes, Rows, Pass>, lanes * most(n), kBlock, 0, n, pass);
-    });
+    const auto by_one = [&] {
+      launch(pair_kernel<Rows, Pass>, most(n), pair_block<Pass>(most(n)), 0, n, pass);
+    };
+    if constexpr (requires { Pass::of_many; })
+      by_one();
+    else
+      with_lanes<Pass::D>(total_, [&](auto lanes) {
+        if constexpr (lanes == 1)
+          by_one();
+        else
+          launch(lanes_kernel<lanes, Rows, Pass>, lanes * most(n), kBlock, 0, n, pass);
+      });
   }
   template <SharedPass Pass>
   void shared(int n, const Pass& pass) {

@@ -5,7 +5,7 @@
 
 #include <type_traits>
 
-#include "kernels/vec3.h"
+#include "kernels/packed_position.h"
 #include "lib/exec/cuda/transposed_lists.cuh"
 
 namespace pbf::PBF_VARIANT {
@@ -62,6 +62,9 @@ __device__ __forceinline__ Vec4<float> row(OwnRows<Vec4<float>> a, Kept k) {
   return k.row->of(a.rows());
 }
 __device__ __forceinline__ void set_row(OwnRows<Vec4<float>> a, Kept k, const Vec4<float>& value) {
+  k.row->set(a.rows(), value);
+}
+__device__ __forceinline__ void set_row(PackingRows a, Kept k, const Vec4<float>& value) {
   k.row->set(a.rows(), value);
 }
 __device__ __forceinline__ float row(OwnRows<const float>, Kept k) { return k.row->density; }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "kernels/packed_position.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
 
@@ -65,8 +66,14 @@ int pair_block(int n) {
   if (!kIsWide<Pass> || n < 100000) return kBlock;
   return n < 400000 ? 512 : 768;
 }
+/// Blocks that run at the same time on a multiprocessor, at least: with packed positions, whose
+/// gathers take less, as many as for wide sums are worth it.
+template <class Pass>
+constexpr int kPairBlocks = kIsWide<Pass>                                        ? 2
+                            : std::is_same_v<typename Pass::Own, PackedPosition> ? 1536 / kBlock
+                                                                                 : 1;
 template <class Rows, class Pass>
-__global__ void __launch_bounds__(kIsWide<Pass> ? 768 : kBlock, kIsWide<Pass> ? 2 : 1)
+__global__ void __launch_bounds__(kIsWide<Pass> ? 768 : kBlock, kPairBlocks<Pass>)
     pair_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
   wait_for_previous();

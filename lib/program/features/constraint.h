@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/pass_lambda.h"
+#include "kernels/pass_packed_lambda.h"
 #include "kernels/pass_residual.h"
 #include "lib/program/features/motion.h"
 
@@ -26,7 +27,8 @@ struct Density {
 /// Velocities of neighbors are needed for marked particles, which the first iteration counts before
 /// it moves anything.
 using LambdaNeeds =
-    Needs<Gathers<field::position>, UsesLists,
+    Needs<If<is_not_packed, Gathers<field::position>>,
+          If<is_packed, Gathers<field::packed_position>, Reads<field::position>>, UsesLists,
           Reads<field::position, W::mark, When::first_iteration>,
           Gathers<field::velocity, W::any, When::first_iteration>,
           If<is_second_order, Reads<field::velocity>>, NearNeeds, NearSumNeeds, ShareNeeds,
@@ -44,14 +46,26 @@ auto lambda_pass(const G& c, const Lists& lists, const Order&, const Boundary& b
       c[field::velocity],
       c[field::counts].sums()};
 }
+template <class Lists, Smoothing S, class Order, class Boundary>
+auto of_packed(const LambdaPass<float, Lists, S, true, Order, Boundary>& pass,
+               GatheredRows<PackedPosition> packed) {
+  return PackedLambdaPass<Lists, S, Order, Boundary>{pass, packed};
+}
 template <bool with_density, class G>
 void launch_lambda(const G& c) {
   c.with_smoothing([&](auto s) {
     constexpr Smoothing S = decltype(s)::value;
     with_order<S, typename G::Real>(c.scene, nullptr, {}, [&](const auto& order) {
-      each_then_near<false>(c, [&](const auto& boundary) {
-        return lambda_pass<S, with_density>(c, c.lists(), order, boundary);
-      });
+      const auto launch = [&](const auto& form) {
+        each_then_near<false>(c, [&](const auto& boundary) {
+          return form(lambda_pass<S, with_density>(c, c.lists(), order, boundary));
+        });
+      };
+      if constexpr (has_packed_rows<G> && with_density && S == Smoothing::consistent)
+        if (c.plan.packed)
+          return launch(
+              [&](const auto& pass) { return of_packed(pass, c[field::packed_position]); });
+      launch([](const auto& pass) { return pass; });
     });
   });
 }

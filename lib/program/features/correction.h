@@ -19,17 +19,9 @@ auto delta_pass(const G& c, const Lists& lists, OwnRows<const typename G::Real> 
   auto p = c.p;
   p.sor = c.sor();
   return DeltaPass<typename G::Real, Lists, S, tensile, Coarse, Order, Boundary>{
-      p,
-      boundary,
-      lists,
-      c[other<field::position>],
-      density,
-      c[field::id],
-      c[field::position],
-      c[field::velocity],
-      moves_on,
-      coarse,
-      order};
+      p,        boundary,     lists,         c[other<field::position>],
+      density,  c[field::id], moved_rows(c), c[field::velocity],
+      moves_on, coarse,       order};
 }
 inline bool has_tensile(const Scene& s) { return s.tensile && s.tensile->k != 0; }
 /// Lists: of the passes.
@@ -77,11 +69,12 @@ inline bool pushes_in_moving_frames(const Scene& s) {
   return is_second_order(s) && has_moving_obstacles(s);
 }
 
-using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
-                         Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
-                         If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
-                            Places<other<field::velocity>>>,
-                         If<pushes_in_moving_frames, Looks<field::solids_before>>>;
+using DeltaNeeds =
+    Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
+          Updates<field::velocity>, PacksPositions, If<has_levels, LevelMoveNeeds>, MoveNeeds,
+          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
+             Places<other<field::velocity>>>,
+          If<pushes_in_moving_frames, Looks<field::solids_before>>>;
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};

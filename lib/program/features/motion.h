@@ -8,6 +8,7 @@
 #include "lib/program/features/body_rows.h"
 #include "lib/program/features/solids.h"
 #include "lib/program/motion.h"
+#include "lib/program/packed_rows.h"
 #include "lib/program/pass.h"
 #include "lib/program/time_order.h"
 
@@ -56,7 +57,7 @@ struct MoveSolids {
 struct Predict {
   static constexpr PassText text{"predict", "predict"};
   using Needs =
-      pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+      pbf::Needs<Updates<field::position, W::mark>, PacksPositions, Updates<field::velocity>,
                  If<is_second_order, Updates<field::free_velocity>>, StepNeeds, FrameNeeds>;
   template <class G>
   static void launch(const G& c) {
@@ -65,8 +66,7 @@ struct Predict {
         c.scene, c.declared(field::free_velocity), damping_book(c), [&](const auto& order) {
           with_boundary(c, [&](const auto& boundary) {
             c.items(MovePass<Real, std::decay_t<decltype(boundary)>, std::decay_t<decltype(order)>>{
-                c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums(),
-                order});
+                c.p, boundary, moved_rows(c), c[field::velocity], c[field::counts].sums(), order});
           });
         });
   }
@@ -108,18 +108,12 @@ auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
   Order sorted = order;
   if constexpr (Order::second) sorted.free = c[field::free_velocity];
   return GatherPass<typename G::Real, Boundary, moving, std::decay_t<decltype(carried)>, Order>{
-      carried,
-      c.p,
-      boundary,
-      c[other<field::position>],
-      velocity,
-      c[other<field::id>],
-      c[field::position],
-      velocity_out,
-      c[field::id],
-      counts,
-      order,
-      sorted};
+      carried,       c.p,
+      boundary,      c[other<field::position>],
+      velocity,      c[other<field::id>],
+      moved_rows(c), velocity_out,
+      c[field::id],  counts,
+      order,         sorted};
 }
 /// Predicts the particles and sorts them by the bins of x*.
 template <class G, class First, class Vectors>
@@ -149,7 +143,7 @@ struct Sort {
   static constexpr PassText text{"sort", "grid"};
   using Flips = pbf::Flips<field::position, field::velocity, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Looks<other<field::position>>, Looks<other<field::velocity>>,
-                           Writes<field::bin>, Places<field::position>, GatherNeeds>;
+                           Writes<field::bin>, Places<field::position>, PlacesPacked, GatherNeeds>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
@@ -172,7 +166,8 @@ using SortPredictedNeeds = Needs<
     Looks<other<field::position>>,
     If<has_solids, Looks<field::near_row>, Looks<field::near_count>, Places<other<field::position>>,
        If<is_second_order, Places<other<field::free_velocity>>>>,
-    Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
+    Writes<field::bin>, Places<field::position, W::mark>, PlacesPacked, GatherNeeds, StepNeeds,
+    FrameNeeds>;
 
 /// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
 /// x* and reading it again.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernels/pass_friction.h"
+#include "kernels/pass_packed_xsph.h"
 #include "kernels/pass_xsph.h"
 #include "lib/program/features/motion.h"
 #include "lib/scene/viscosity.h"
@@ -32,36 +33,63 @@ namespace pbf::PBF_VARIANT {
 
 inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
-/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for
-/// the particles' bins in the next update, or null. free: field::free_velocity, with bin.
+/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. motion: packed rows,
+/// if the scene has them. bin: array for the particles' bins in the next update, or null. free:
+/// field::free_velocity, with bin.
 template <class G, class Lists, class Rows, class Use>
 void with_xsph(const G& c, const Lists& lists, GatheredRows<Rows> position,
-               GatheredRows<Rows> velocity, OwnRows<Rows> velocity_out,
+               GatheredRows<Rows> velocity, GatheredRows<Rows> motion, OwnRows<Rows> velocity_out,
                std::type_identity_t<Rows>* free, int* bin, const Use& use) {
   using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
     const DissipationBook damping = bin ? damping_book(c) : DissipationBook{};
     with_order<decltype(s)::value, Real>(c.scene, free, damping, [&](const auto& order) {
       with_far_boundary(c, [&](const auto& boundary) {
-        use(XsphPass<Real, Lists, decltype(s)::value, std::decay_t<decltype(order)>,
-                     std::decay_t<decltype(boundary)>>{
-            c.p, boundary, lists, position, velocity, velocity_out, bin,
-            viscous_book<Dissipation::viscosity>(c), order});
+        constexpr Smoothing S = decltype(s)::value;
+        using Order = std::decay_t<decltype(order)>;
+        using Boundary = std::decay_t<decltype(boundary)>;
+        const XsphPass<Real, Lists, S, Order, Boundary> plain{
+            c.p,      boundary,     lists, position,
+            velocity, velocity_out, bin,   viscous_book<Dissipation::viscosity>(c),
+            order};
+        if constexpr (has_packed_rows<G> && S == Smoothing::consistent)
+          if (c.plan.packed) return use(PackedXsphPass<Lists, S, Order, Boundary>{plain, motion});
+        use(plain);
       });
     });
   });
 }
 
+/// Packs rows for XSPH into the second positions, which nothing needs until the next sort.
+struct PackMotion {
+  static constexpr PassText text{"pack motion", "xsph", kLessXsph};
+  using Needs = pbf::Needs<Reads<field::position, W::inverse_density>, Reads<field::velocity>,
+                           Writes<other<field::position>>>;
+  template <class G>
+  static void launch(const G& c) {
+    if constexpr (has_packed_rows<G>)
+      c.items(PackMotionPass{c.p.dt, c[field::position], c[field::velocity],
+                             c[other<field::position>]});
+  }
+};
+
+/// motion: where the packed rows are.
+template <auto& position, auto& velocity, auto& motion>
+using XsphNeeds =
+    Needs<If<is_not_packed, Gathers<position, W::inverse_density>, Gathers<velocity>>,
+          If<is_packed, Reads<position, W::inverse_density>, Reads<velocity>, Gathers<motion>>,
+          UsesLists, Adds<field::dissipation>>;
+
 struct Xsph {
   static constexpr PassText text{"xsph", "xsph", kLessXsph};
   using Flips = pbf::Flips<field::velocity>;
   using Needs =
-      pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<other<field::velocity>>,
-                 UsesLists, Writes<field::velocity>, Adds<field::dissipation>>;
+      pbf::Needs<XsphNeeds<field::position, other<field::velocity>, other<field::position>>,
+                 Writes<field::velocity>>;
   /// Calls use(pass).
   static void with(const auto& c, const auto& lists, const auto& use) {
-    with_xsph(c, lists, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
-              nullptr, use);
+    with_xsph(c, lists, c[field::position], c[other<field::velocity>], c[other<field::position>],
+              c[field::velocity], nullptr, nullptr, use);
   }
   static void launch(const auto& c) {
     with(c, c.lists(), [&](const auto& pass) { c.pairs(pass); });
@@ -73,17 +101,18 @@ struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
   using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
-  using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
-                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>,
-                           Adds<field::dissipation>>;
+  using Needs = pbf::Needs<XsphNeeds<other<field::position>, field::velocity, field::position>,
+                           SortPredictedNeeds, Places<other<field::velocity>>>;
   /// Calls use(pass, sort). sort(first): sorts after `first`, which is the pass or launches it.
   template <class G>
   static void with(const G& c, const auto& lists, const auto& use) {
     using Rows = Vec4<typename G::Real>;
-    Rows *position = c[other<field::position>], *from = c[field::velocity],
-         *to = c[other<field::velocity>];
-    with_xsph(c, lists, GatheredRows<Rows>(position), GatheredRows<Rows>(from), OwnRows<Rows>(to),
-              c.declared(other<field::free_velocity>), c[field::bin].rows(), [&](const auto& pass) {
+    const Rows* position = c[other<field::position>];
+    Rows *from = c[field::velocity], *to = c[other<field::velocity>];
+    using Gathered = GatheredRows<Rows>;
+    with_xsph(c, lists, Gathered(position), Gathered(from), Gathered(c[field::position]),
+              OwnRows<Rows>(to), c.declared(other<field::free_velocity>), c[field::bin].rows(),
+              [&](const auto& pass) {
                 use(pass, [&](const auto& first) { sort_predicted(c, "xsph", first, to, from); });
               });
   }
@@ -128,11 +157,12 @@ struct Friction {
 };
 
 struct Viscosities {
-  using Passes = PassList<Xsph, XsphPredictSort, Friction>;
+  using Passes = PassList<PackMotion, Xsph, XsphPredictSort, Friction>;
   static void add(const Scene& s, auto& b) {
     const int sweeps = viscous_sweeps(s).sweeps;
     if (sweeps == 0) b.left_out("xsph pass", "no key viscosity");
     for (int k = 0; k < sweeps; ++k) {
+      if (b.shape.packed) b.after(PackMotion());
       b.after(Xsph());
       if (has_friction(s)) b.after(Friction());
     }

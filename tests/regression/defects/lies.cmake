@@ -14,7 +14,7 @@ seeded_defect(undeclared_gather declarations lib/program/features/confinement.h
 seeded_defect(undeclared_gather_of_lambda declarations lib/program/features/constraint.h
   [[Gathers<field::velocity, W::any, When::first_iteration>,]] [[]])
 seeded_defect(undeclared_lists declarations lib/program/features/viscosity.h
-  [[UsesLists, Writes<field::velocity>, Adds]] [[Writes<field::velocity>, Adds]])
+  [[UsesLists, Adds<field::dissipation>]] [[Adds<field::dissipation>]])
 seeded_defect(undeclared_behind_address declarations lib/program/features/solids.h
   [[Needs<If<has_obstacles, Looks<field::solid_scene>, Looks<field::solids>>,]]
   [[Needs<If<has_obstacles, Looks<field::solid_scene>>,]])

@@ -98,7 +98,7 @@ seeded_defect(one_iteration_less iterations lib/solver/stepper.h
 seeded_defect(level_cell_of_next levels kernels/pass_level_cells.h
   [[home[i] = in ? c : -1;]] [[home[i] = in ? (c + 1) % grid.size() : -1;]] levels)
 seeded_defect(level_last_row_left_out levels kernels/pass_level_cells.h
-  [[(cell[axis] + 1 < grid.cells[axis] ? 2 : 3);]] [[2;]] levels)
+  [[cell[axis] + 1 < grid.cells[axis] ? 2 : 3; };]] [[2; };]] levels)
 seeded_defect(level_node_beside_air levels kernels/pass_level_cells.h
   [[inside < grid.half(cell) ||]] [[inside == 0 ||]] levels)
 seeded_defect(level_open_face_opposite levels kernels/pass_level_cells.h
@@ -119,7 +119,7 @@ seeded_defect(level_clip_missing levels kernels/pass_levels.h
 seeded_defect(level_sum_one_sided levels kernels/pass_levels.h
   [[Real(kLevelClip)), Real(-1))]] [[Real(kLevelClip)), Real(0))]] levels)
 seeded_defect(level_beyond_face_counted levels kernels/pass_levels.h
-  [[mine += home[i] >= 0 ? excess(density[i]) : 0;]] [[mine += excess(density[i]);]] levels)
+  [[(!home || home[j] >= 0) ?]] [[true ?]] levels)
 seeded_defect(level_cell_left_out levels kernels/levels.h
   [[x < end[0]; x += 1 << bits)]] [[x + 1 < end[0]; x += 1 << bits)]] levels)
 seeded_defect(level_multiplier_signed levels kernels/pass_levels.h

@@ -111,8 +111,8 @@ TEST_CASE("exchanges: substeps, repeated iterations, passes one by one and a mea
   const auto middle = [](const UpdateShape& shape, std::vector<std::string> set = {}) {
     return exchange_text(exchanges(program_of("", std::move(set), shape)));
   };
-  const std::string taken = ", delta[position']" + kAgain +
-                            ", density+lambda[position], delta+predict[position']",
+  const std::string delta = ", delta[position']";
+  const std::string taken = delta + kAgain + ", density+lambda[position], delta+predict[position']",
                     all = kAgain + kAgain + kAgain;
   // The first iteration of a substep looks at velocities of neighbors.
   CHECK(middle({2, 1, 0}) ==
@@ -123,6 +123,12 @@ TEST_CASE("exchanges: substeps, repeated iterations, passes one by one and a mea
   CHECK(middle({2, 1, 4}) == kSorted + kIterations + ", until" + all +
                                  ", density+lambda[position, velocity]" + kIterations + ", until" +
                                  all);
+
+  // Packed rows: lambda needs 8 bytes of a ghost, xsph one row instead of two.
+  const std::string packed_lambda = "density+lambda[packed position]",
+                    packed = ", " + packed_lambda + delta;
+  CHECK(middle({1, 1, 0, true}, {"viscosity.xsph=0.1"}) ==
+        "xsph+predict+sort[position]" + kRowMessage + packed + packed + packed);
 
   const Program p = program_of("", {"viscosity.xsph=0.1"});
   RankState state;

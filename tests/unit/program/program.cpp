@@ -1,6 +1,7 @@
 // The passes of an update. The expected sequences are written by hand from kernels/README.md ("The
 // step") and the features' own rules.
 #include "lib/program/program.h"
+#include "lib/program/plan.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/program_steps.h"
@@ -249,6 +250,47 @@ TEST_CASE("program: passes are independent if neither writes an array that the o
   CHECK_FALSE(independent("lists", "predict"));         // which moves what is listed
   CHECK_FALSE(independent("lists", "lists"));
   CHECK_FALSE(independent("near solids", "sort"));  // which swaps arrays
+}
+
+TEST_CASE("program: with packed rows, what xsph gathers is packed before each sweep") {
+  const Program p = program_of("", {"viscosity.xsph=0.1"}, {1, 1, 0, true});
+  CHECK(text(p.update) == "predict, sort, lists, " + kRound + ", pack motion, xsph");
+  CHECK(text(p.next) == "pack motion, xsph+predict+sort");
+  CHECK(text(p.last) == "pack motion, xsph");
+  const auto gathers = [&](const Program& of, const std::string& name) {
+    for (const PassInfo& pass : of.passes)
+      if (pass.name == name) return gathers_text(pass);
+    return std::string("no such pass");
+  };
+  CHECK(gathers(p, "density+lambda") == "packed position");
+  CHECK(gathers(p, "xsph+predict+sort") == "position");
+  CHECK(gathers(program_of("", {"viscosity.xsph=0.1"}), "density+lambda") == "position");
+}
+
+TEST_CASE(
+    "program: rows are packed where a gather is what limits a pass, and packed ones are right") {
+  const auto packs = [](std::int64_t particles, const std::vector<std::string>& more = {},
+                        const std::string& yaml = "") {
+    std::vector<std::string> set{"backend=cuda"};
+    set.insert(set.end(), more.begin(), more.end());
+    const Plan plan = make_plan(parse(kMinimal + yaml, set), particles);
+    CHECK(plan.shape().packed == plan.packed);
+    return plan.packed;
+  };
+  CHECK(packs(100001));
+  CHECK(packs(100001, {"solver.substeps=2", "solver.levels=on", "time.order=1"}));
+  CHECK(packs(100001, {}, kStanding));
+  CHECK_FALSE(packs(100000));  // several threads share a sum
+  for (const std::string& key :
+       {"backend=cpu", "precision=double", "solver.reproducible=true", "solver.fused=false",
+        "solver.iterations=0", "solver.kernels=paper",
+        // Images are elsewhere than their rows, and emitters move particles in their pipes.
+        "domain.periodic=[x]",
+        "emitters=[{name: a, shape: disc, center: [0.5, 0.5, 0.5], normal: "
+        "[0, 0, -1], radius: 0.2, speed: 1}]"}) {
+    CAPTURE(key);
+    CHECK_FALSE(packs(100001, {key}));
+  }
 }
 
 }  // namespace pbf::scene_test
