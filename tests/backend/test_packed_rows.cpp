@@ -1,5 +1,5 @@
-// Packed rows (lib/program/packed_rows.h), here for few particles too: their plans say so. Other
-// backends and precisions have no such passes, and ignore it.
+// Packed rows (lib/program/packed_rows.h), here for few particles too: their plans say so where
+// the backend has such passes.
 #include "lib/program/packed_rows.h"
 
 #include <cmath>
@@ -16,8 +16,10 @@ using backend_test::is_double;
 namespace {
 
 void set_packed(const pbf::Scene& scene, pbf::Plan& plan, bool packed) {
+  const bool has_them = scene.backend == pbf::Backend::cuda &&
+                        scene.precision == pbf::Precision::single && !scene.solver.reproducible;
   plan.turns = false;
-  plan.packed = packed;
+  plan.packed = packed && has_them;
   plan.program = pbf::make_program(scene, plan.shape());
 }
 std::unique_ptr<pbf::Solver> solver_of(const Case& c, bool packed) {
