@@ -88,7 +88,6 @@ PBF_HD PackedPosition load(const PackedPosition* a, int i) {
 #endif
 }
 
-#if defined(__CUDACC__)
 /// Positions that a pass writes and, where `packed` is not null, also their packed rows.
 struct PackingRows : OwnRows<Vec4<float>> {
   PackedPosition* packed = nullptr;
@@ -101,9 +100,5 @@ PBF_HD void set_row(PackingRows a, int i, const Vec4<float>& value) {
 }
 template <class Real>
 using MovedRows = std::conditional_t<std::is_same_v<Real, float>, PackingRows, OwnRows<Vec4<Real>>>;
-#else
-template <class Real>
-using MovedRows = OwnRows<Vec4<Real>>;
-#endif
 
 }  // namespace pbf::PBF_VARIANT
