@@ -281,7 +281,7 @@ TEST_CASE(
   CHECK(packs(100001, {"solver.substeps=2", "solver.levels=on", "time.order=1"}));
   CHECK(packs(100001, {}, kStanding));
   CHECK_FALSE(packs(100000));  // several threads share a sum
-  for (const std::string& key :
+  for (const char* key :
        {"backend=cpu", "precision=double", "solver.reproducible=true", "solver.fused=false",
         "solver.iterations=0", "solver.kernels=paper",
         // Images are elsewhere than their rows, and emitters move particles in their pipes.
