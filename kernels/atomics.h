@@ -31,6 +31,14 @@ PBF_HD std::int64_t sum_of_warp([[maybe_unused]] const void* place, std::int64_t
                      high = __reduce_add_sync(here, int(term >> 2 * bits));
   const bool first = (here & ((1u << threadIdx.x % 32) - 1)) == 0;
   return first ? (high << 2 * bits) + (middle << bits) + low : 0;
+#elif defined(__CUDA_ARCH__)  // full warps alone
+  constexpr unsigned all = 0xffffffffu;
+  if (__activemask() != all) return term;
+  int same = 0;
+  __match_all_sync(all, reinterpret_cast<unsigned long long>(place), &same);
+  if (!same) return term;
+  for (int k = 16; k > 0; k /= 2) term += __shfl_down_sync(all, term, k);
+  return threadIdx.x % 32 == 0 ? term : 0;
 #else
   return term;
 #endif

@@ -113,7 +113,11 @@ struct LambdaPass {
   template <class V>
   PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y) const {
     const Vec<V, D> d = x - y;
-    const V q2 = dot(d, d);
+    add_pair(s, d, dot(d, d));
+  }
+  /// d: in the unit of the gradient's sum.
+  template <class V>
+  PBF_HD void add_pair(SumOf<V>& s, const Vec<V, D>& d, V q2) const {
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q), t2 = t * t;
     if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);

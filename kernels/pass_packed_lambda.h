@@ -20,12 +20,7 @@ struct PackedLambdaPass : LambdaPass<float, Lists, S, true, Order, Boundary> {
   PBF_HD auto other(Neighbor j) const { return load(packed, j); }
   PBF_HD void add(Sum& s, const Own& a, const Own& b) const {
     const Vec3<float> d = packed_steps(a, b);
-    const float q2 = pads_lists(b) ? 1.f : kRingStep * kRingStep * dot(d, d);
-    const Root<float> root = root_of(q2);
-    const float t = Spiky<float>::t(root.q), t2 = t * t;
-    s.shape += density_shape<float, S>(q2, t);
-    s.squares += t2 * t2;
-    s.gradient = s.gradient + (t2 * root.inverse) * d;
+    Base::add_pair(s, d, pads_lists(b) ? 1.f : kRingStep * kRingStep * dot(d, d));
   }
   PBF_HD void finish(int i, const Own&, Sum s) const {
     s.gradient = kRingStep * s.gradient;

@@ -16,22 +16,13 @@ struct PackedXsphPass : XsphPass<float, Lists, S, Order, Boundary> {
   GatheredRows<Vec4<float>> motion;      ///< packed_motion() of each particle
   static constexpr bool of_many = true;  ///< see PackedLambdaPass
 
-  template <class Index>
-  PBF_HD auto own(Index i) const {
-    return load(motion, i);
-  }
-  template <class Index>
-  PBF_HD auto other(Index j) const {
-    return load(motion, j);
-  }
+  PBF_HD auto own(int i) const { return load(motion, i); }
+  PBF_HD auto other(Neighbor j) const { return load(motion, j); }
   PBF_HD void add(Sum& s, const Own& a, const Vec4<float>& b) const {
-    const float q2 = square_by_mul_add(packed_distance(a, b));
-    const float shape =
-        density_shape<float, S>(q2, is_paper(S) ? 0.f : Spiky<float>::t_of_square(q2));
-    s.v = mul_add(shape * packed_inverse_densities(a, b), packed_way_steps(b, a), s.v);
+    Base::add_pair(s, packed_distance(a, b), packed_inverse_densities(a, b),
+                   packed_way_steps(b, a));
   }
-  template <class Index>
-  PBF_HD void finish(Index i, const Own&, const Sum& s) const {
+  PBF_HD void finish(int i, const Own&, const Sum& s) const {
     const float speed = kRingStep * this->p.inv_dt;
     Base::finish(i, xsph_own<3>(load(this->position, i), load(this->velocity, i)),
                  Sum{speed * s.v});

@@ -50,10 +50,14 @@ struct XsphPass {
   }
   template <class V>
   PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b) const {
-    const Vec<V, D> d = a.x - point<D>(b.x);
+    add_pair(s, a.x - point<D>(b.x), a.w + b.x.w, point<D>(b.v) - a.v);
+  }
+  /// d: the distance, weight: 1/density of both, v: the difference of their velocities.
+  template <class V>
+  PBF_HD void add_pair(VectorSum<V, D>& s, const Vec<V, D>& d, V weight, const Vec<V, D>& v) const {
     const V q2 = square_by_mul_add(d);
     const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t_of_square(q2));
-    s.v = mul_add(shape * (a.w + b.x.w), point<D>(b.v) - a.v, s.v);
+    s.v = mul_add(shape * weight, v, s.v);
   }
   template <class V>
   PBF_HD bool together(const VectorSum<V, D>&) const requires(!Boundary::far_only) {

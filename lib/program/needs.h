@@ -161,6 +161,11 @@ void Then<A, B>::list(const Declarer& of, std::vector<AccessInfo>& to) {
   }
 }
 
+/// Whether passes have the fast form of the GPU in float.
+inline bool is_fast_on_gpu(const Scene& s) {
+  return s.backend == Backend::cuda && s.precision == Precision::single && !s.solver.reproducible;
+}
+
 /// Whether particles come or go.
 inline bool changes_rows(const Scene& s) {
   return s.capacity > 0 || !s.emitters.empty() || !s.sinks.empty();

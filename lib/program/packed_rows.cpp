@@ -3,12 +3,11 @@
 namespace pbf::program_module {
 
 bool packs_rows(const Scene& s, const Plan& plan) {
-  const bool fast = s.backend == Backend::cuda && s.precision == Precision::single &&
-                    !s.solver.reproducible && plan.particles > kMostUnpacked;
+  const bool many = is_fast_on_gpu(s) && plan.particles > kMostUnpacked;
   const bool fused =
       s.solver.iterations > 0 && s.solver.fused && s.solver.kernels == KernelMode::consistent;
   const bool at_rows = s.domain.periodic.empty() && !changes_rows(s);
-  return fast && fused && at_rows && s.dimensions == 3;
+  return many && fused && at_rows && s.dimensions == 3;
 }
 
 }  // namespace pbf::program_module

@@ -16,29 +16,14 @@ using backend_test::is_double;
 namespace {
 
 void set_packed(const pbf::Scene& scene, pbf::Plan& plan, bool packed) {
-  const bool has_them = scene.backend == pbf::Backend::cuda &&
-                        scene.precision == pbf::Precision::single && !scene.solver.reproducible;
   plan.turns = false;
-  plan.packed = packed && has_them;
+  plan.packed = packed && pbf::is_fast_on_gpu(scene);
   plan.program = pbf::make_program(scene, plan.shape());
 }
 std::unique_ptr<pbf::Solver> solver_of(const Case& c, bool packed) {
   pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   set_packed(c.scene, plan, packed);
   return pbf::make_solver(c.scene, plan, c.particles);
-}
-/// A block of fluid that falls, with some particles in one place and some that pass others fast.
-Case splash(int edge) {
-  Case c = here(jittered_block(edge, edge, edge, 0.3, 0.5));
-  auto& p = c.particles;
-  const std::size_t n = p.position.size();
-  p.position[n / 2] = p.position[n / 2 + 1];
-  p.position[n - 1] = p.position[n - 2] = p.position[n - 3];
-  p.velocity[n / 3] = {12, 0, -3};
-  c.scene.viscosity = pbf::Viscosity{};
-  c.scene.viscosity->xsph = 0.05;
-  c.scene.solver.prestabilize = false;
-  return c;
 }
 /// Root of the mean square of the differences of all coordinates, in h, after some updates.
 double difference_after(pbf::Solver& a, pbf::Solver& b, int updates) {
@@ -70,12 +55,11 @@ TEST_CASE("packed rows move particles as the CPU in double does, nearly as well 
   // Differences grow in each update.
   CHECK(packed < (is_double() ? plain : updates == 1 ? 1.5 * plain + 1e-6 : 5 * plain) + 1e-12);
   CHECK(packed < (is_double() ? 1e-12 : updates == 1 ? 2e-6 : 2e-5));
-  if (backend_test::backend() == pbf::Backend::cuda && !is_double()) CHECK(packed != plain);
+  if (pbf::is_fast_on_gpu(c.scene)) CHECK(packed != plain);
 }
 
 TEST_CASE("packed rows: updates give the bits of passes one by one") {
-  Case c = splash(13);
-  c.scene.tensile = pbf::Tensile{};
+  Case c = backend_test::falling_block(13);
   SECTION("second order") {}
   SECTION("first order") { c.scene.time.order = pbf::TimeOrder::first; }
   SECTION("substeps, which share lists") { c.scene.solver.substeps = 3; }
@@ -104,13 +88,10 @@ TEST_CASE("packed rows: updates give the bits of passes one by one") {
     c.scene.tank_motion->amplitude = 12;
     c.scene.tank_motion->period = 0.4;
   }
-  const auto together = solver_of(c, true), one_by_one = solver_of(c, true);
-  together->step(12);
-  for (int k = 0; k < 12; ++k) one_by_one->inspection()->trace();
-  const pbf::SolverState a = together->state(), b = one_by_one->state();
-  CHECK(backend_test::same_particles(a, b));
-  CHECK(a.fields == b.fields);
-  CHECK(together->diagnose().compression_mean == one_by_one->diagnose().compression_mean);
+  const auto ending = [&](bool one_by_one) {
+    return backend_test::ending_of(*solver_of(c, true), one_by_one, 12);
+  };
+  backend_test::check_same(ending(false), ending(true));
 }
 
 TEST_CASE("packed rows: ranks that share a device give the bits of one") {

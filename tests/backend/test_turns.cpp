@@ -8,51 +8,22 @@
 #include "tests/support/catch.h"
 
 using namespace oracle_test;
+using backend_test::check_same;
+using backend_test::Ending;
+using backend_test::ending_of;
+using backend_test::falling_block;
 using backend_test::here;
 using backend_test::is_double;
 
 namespace {
 
-/// A block of fluid that falls, with some particles in one place and some that pass others fast.
-Case falling_block(int edge) {
-  Case c = here(jittered_block(edge, edge, edge, 0.3, 0.5));
-  auto& p = c.particles;
-  const std::size_t n = p.position.size();
-  p.position[n / 2] = p.position[n / 2 + 1];
-  p.position[n - 1] = p.position[n - 2] = p.position[n - 3];
-  p.velocity[n / 3] = {12, 0, -3};
-  c.scene.viscosity = pbf::Viscosity{};
-  c.scene.viscosity->xsph = 0.05;
-  c.scene.tensile = pbf::Tensile{};
-  c.scene.solver.prestabilize = false;
-  return c;
-}
-
 bool takes_turns(const Case& c) {
   return pbf::make_plan(c.scene, std::int64_t(c.particles.size())).turns;
 }
 
-/// After some updates, recorded or one by one. One solver at a time: where several share a device,
-/// they do not take turns.
-struct Ending {
-  pbf::SolverState state;
-  double compression = 0, launches = 0;
-  std::int64_t neighbors = 0;
-};
+/// One solver at a time: where several share a device, they do not take turns.
 Ending after_updates(const Case& c, bool one_by_one, int updates = 12) {
-  auto solver = make(c);
-  if (one_by_one)
-    for (int k = 0; k < updates; ++k) solver->inspection()->trace();
-  else
-    solver->step(updates);
-  const pbf::Diagnostics m = solver->diagnose();
-  return {solver->state(), m.compression_mean, solver->info().launches, m.neighbors_max};
-}
-void check_same(const Ending& a, const Ending& b) {
-  CHECK(backend_test::same_particles(a.state, b.state));
-  CHECK(a.state.fields == b.state.fields);  // also free velocities, and what viscosity took
-  CHECK(a.compression == b.compression);
-  CHECK(a.neighbors == b.neighbors);
+  return ending_of(*make(c), one_by_one, updates);
 }
 
 }  // namespace

@@ -42,6 +42,42 @@ inline bool same_particles(const pbf::SolverState& a, const pbf::SolverState& b)
   return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
 }
 
+/// A block of fluid that falls, with some particles in one place and some that pass others fast.
+inline oracle_test::Case falling_block(int edge) {
+  oracle_test::Case c = here(oracle_test::jittered_block(edge, edge, edge, 0.3, 0.5));
+  auto& p = c.particles;
+  const std::size_t n = p.position.size();
+  p.position[n / 2] = p.position[n / 2 + 1];
+  p.position[n - 1] = p.position[n - 2] = p.position[n - 3];
+  p.velocity[n / 3] = {12, 0, -3};
+  c.scene.viscosity = pbf::Viscosity{};
+  c.scene.viscosity->xsph = 0.05;
+  c.scene.tensile = pbf::Tensile{};
+  c.scene.solver.prestabilize = false;
+  return c;
+}
+
+/// What updates leave, recorded or one by one.
+struct Ending {
+  pbf::SolverState state;
+  double compression = 0, launches = 0;
+  std::int64_t neighbors = 0;
+};
+inline Ending ending_of(pbf::Solver& solver, bool one_by_one, int updates) {
+  if (one_by_one)
+    for (int k = 0; k < updates; ++k) solver.inspection()->trace();
+  else
+    solver.step(updates);
+  const pbf::Diagnostics m = solver.diagnose();
+  return {solver.state(), m.compression_mean, solver.info().launches, m.neighbors_max};
+}
+inline void check_same(const Ending& a, const Ending& b) {
+  CHECK(same_particles(a.state, b.state));
+  CHECK(a.state.fields == b.state.fields);  // also free velocities, and what viscosity took
+  CHECK(a.compression == b.compression);
+  CHECK(a.neighbors == b.neighbors);
+}
+
 using pbf::Series;
 
 /// The readings of the loads of a wall or an obstacle, SI units.

@@ -76,7 +76,7 @@ seeded_defect(sink_momentum_of_one_axis tests/backend/test_emission.cpp kernels/
 seeded_defect(viscosity_doubled tests/backend/test_viscosity.cpp kernels/pass_xsph.h
   [[(Real(0.5) * p.xsph * p.vol]] [[(p.xsph * p.vol]])
 seeded_defect(viscosity_of_one_side tests/backend/test_viscosity.cpp kernels/pass_xsph.h
-  [[mul_add(shape * (a.w + b.x.w),]] [[mul_add(shape * (a.w + a.w),]])
+  [[point<D>(b.x), a.w + b.x.w,]] [[point<D>(b.x), a.w + a.w,]])
 seeded_defect(viscosity_of_all_sweeps_in_each tests/backend/test_viscosity.cpp lib/scene/viscosity.cpp
   [[*s.viscosity->kinematic) / sweeps;]] [[*s.viscosity->kinematic);]])
 seeded_defect(friction_doubled tests/backend/test_viscosity.cpp kernels/pass_friction.h

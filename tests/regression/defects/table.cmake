@@ -137,8 +137,8 @@ seeded_defect(level_displacement_sign delta kernels/pass_delta.h
   [[all + coarse(i);]] [[all - coarse(i);]] levels)
 
 # xsph, vorticity
-seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[shape * (a.w + b.x.w)]] [[shape + shape]])
-seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[point<D>(b.v) - a.v,]] [[a.v - point<D>(b.v),]])
+seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[a.w + b.x.w,]] [[V(2),]])
+seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[point<D>(b.v) - a.v);]] [[a.v - point<D>(b.v));]])
 seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
   [[root.inverse) * d, v);]] [[root.inverse) * d, a.v - point<D>(b.v));]])
 seeded_defect(vorticity_sign vorticity kernels/pass_vorticity.h

@@ -2,30 +2,22 @@
 // in double from the rows themselves.
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "kernels/boundary/far_boundary.h"
 #include "kernels/pass_packed_xsph.h"
 #include "tests/support/catch.h"
+#include "tests/support/random_vectors.h"
 
 namespace {
 
 using namespace pbf;
+using test::RandomVectors;
 
 /// x (h), dt v (h), 1/density.
 struct Mover {
   Vec3<float> x, way;
   float inverse_density;
-};
-struct Random {
-  std::mt19937 bits{5};
-  double operator()(double low, double high) {
-    return low + (high - low) * double(bits()) / double(bits.max());
-  }
-  Vec3<float> vector(double low, double high) {
-    return {float((*this)(low, high)), float((*this)(low, high)), float((*this)(low, high))};
-  }
 };
 /// Lists in which all are neighbors of each other.
 struct All {
@@ -45,7 +37,7 @@ double farthest(Vec3<float> found, Vec3<float> a, Vec3<float> b) {
 TEST_CASE("packed motion: differences of neighbors are right to the steps of their rows") {
   const double place = GENERATE(0.0, -7.0, 3.9, 250.0, 3000.0);
   CAPTURE(place);
-  Random random;
+  RandomVectors random;
   double x = 0, way = 0, density = 0;
   for (int k = 0; k < 20000; ++k) {
     Mover a{random.vector(place, place + 4), random.vector(-0.9, 0.9), float(random(0.05, 8))};
@@ -67,7 +59,7 @@ TEST_CASE("packed motion: differences of neighbors are right to the steps of the
 }
 
 TEST_CASE("packed motion: equal velocities have no difference, wherever the particles are") {
-  Random random;
+  RandomVectors random;
   const Vec3<float> way = random.vector(-1, 1);
   for (int k = 0; k < 1000; ++k) {
     const Vec4<float> a = packed({random.vector(0, 50), way, float(random(0.3, 3))}),
@@ -90,7 +82,7 @@ TEST_CASE("packed motion: the row that pads lists adds nothing, and 1/density ha
 
 TEST_CASE(
     "packed motion: XSPH differs from that of the rows by 1e-4 of itself and 1e-6 h in a step") {
-  Random random;
+  RandomVectors random;
   All all;
   for (int k = 0; k < 40; ++k)
     all.of.push_back({random.vector(57, 58.2), random.vector(0.1, 0.2), float(random(0.9, 1.1))});

@@ -2,26 +2,18 @@
 // the same sums in double from the positions themselves.
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "kernels/boundary/far_boundary.h"
 #include "kernels/pass_packed_lambda.h"
 #include "tests/support/catch.h"
+#include "tests/support/random_vectors.h"
 
 namespace {
 
 using namespace pbf;
+using test::RandomVectors;
 
-struct RandomPlaces {
-  std::mt19937 bits{7};
-  double operator()(double low, double high) {
-    return low + (high - low) * double(bits()) / double(bits.max());
-  }
-  Vec3<float> vector(double low, double high) {
-    return {float((*this)(low, high)), float((*this)(low, high)), float((*this)(low, high))};
-  }
-};
 /// Lists in which all are neighbors of each other, and then comes a row that pads them.
 struct Neighborhood {
   int count = 0, far = count;
@@ -35,7 +27,7 @@ struct Neighborhood {
 TEST_CASE("packed position: differences of neighbors are right to the steps of their rows") {
   const double place = GENERATE(0.0, -7.0, 1.99, 3.999, 250.0, 3000.0, 1e6);
   CAPTURE(place);
-  RandomPlaces random;
+  RandomVectors random;
   double worst = 0;
   for (int k = 0; k < 20000; ++k) {
     const Vec3<float> a = random.vector(place - 4, place + 4);
@@ -52,7 +44,7 @@ TEST_CASE("packed position: differences of neighbors are right to the steps of t
 }
 
 TEST_CASE("packed position: particles at one place have no distance, and zeros pad lists") {
-  RandomPlaces random;
+  RandomVectors random;
   for (int k = 0; k < 1000; ++k) {
     const Vec3<float> x = random.vector(-100, 100);
     const Vec3<float> d = packed_steps(packed_position(x), packed_position(x));
@@ -63,7 +55,7 @@ TEST_CASE("packed position: particles at one place have no distance, and zeros p
 }
 
 TEST_CASE("packed position: density and lambda are right to 1e-5, and padding adds nothing") {
-  RandomPlaces random;
+  RandomVectors random;
   const Neighborhood all{GENERATE(1, 2, 40)};
   const std::size_t n = std::size_t(all.count);
   std::vector<Vec4<float>> position, out(n), velocity(n);
