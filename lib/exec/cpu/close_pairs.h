@@ -44,7 +44,8 @@ PBF_AVX2 void fill_by_avx2(const Vec4<Real>* position, int b, int e, const Colum
 }
 #endif
 template <class Real>
-void fill(Simd simd, const Vec4<Real>* position, int b, int e, const Columns<Real>& to) {
+void fill([[maybe_unused]] Simd simd, const Vec4<Real>* position, int b, int e,
+          const Columns<Real>& to) {
 #ifdef PBF_HAS_AVX
   if (simd >= Simd::avx2) return fill_by_avx2(position, b, e, to);
 #endif

@@ -54,7 +54,8 @@ TEST_CASE("packed position: particles at one place have no distance, and zeros p
   CHECK(pads_lists({0xffffffffu, 0xfffffffeu}));
 }
 
-TEST_CASE("packed position: density and lambda are right to 1e-5, and padding adds nothing") {
+TEST_CASE(
+    "packed position: density is right to 1e-5 and lambda to 4e-5, and padding adds nothing") {
   RandomVectors random;
   const Neighborhood all{GENERATE(1, 2, 40)};
   const std::size_t n = std::size_t(all.count);
@@ -96,7 +97,8 @@ TEST_CASE("packed position: density and lambda are right to 1e-5, and padding ad
     for (const double k : gradient) sum += g * g * k * k;
     CAPTURE(i);
     CHECK(density[std::size_t(i)] == Approx(rho).epsilon(1e-5));
-    CHECK(out[std::size_t(i)].w == Approx(-(rho - 1) / sum).epsilon(1e-5));
+    // rho - 1 loses digits. The worst of 500 such neighborhoods with rho off 1 by 0.1: 3.1e-5.
+    CHECK(out[std::size_t(i)].w == Approx(-(rho - 1) / sum).epsilon(4e-5));
     CHECK(out[std::size_t(i)].x == a.x);  // at the position itself
   }
 }
