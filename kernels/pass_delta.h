@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "kernels/packed_motion.h"
 #include "kernels/pair_sum.h"
 #include "kernels/pass_levels.h"
 #include "kernels/pass_predict.h"
@@ -47,6 +48,7 @@ struct DeltaPass {
   StepCounts* moves_on;                   ///< not null: this pass also predicts the next substep
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
   Order order{};                          ///< with moves_on: in/out
+  Vec4<Real>* motion = nullptr;           ///< out, unless null: packed_motion(), in float
 
   static constexpr int D = dimensions_of(S);
   template <class V>
@@ -168,8 +170,11 @@ struct DeltaPass {
         return;
       }
     }
-    set_row(position_out, i, with_w(inside, Real(1) / row(density, i)));
+    const V inverse_density = Real(1) / row(density, i);
+    set_row(position_out, i, with_w(inside, inverse_density));
     set_row(velocity, i, with_w(v, V(0)));
+    if constexpr (std::is_same_v<V, float>)
+      if (motion) motion[i] = packed_motion(inside, p.dt * v, inverse_density);
   }
   PBF_HD Real pair_factor() const { return p.vol * Spiky<Real, D>::gradient_norm; }
   /// More than any sum of 1/q without coincident neighbors.

@@ -7,8 +7,8 @@ namespace pbf::program_module {
 
 /// The passes of a scene by their place in an update, and what is known of all passes.
 struct PassSet {
-  Steps at_start, before_sort, behind_predict, with_lists, with_all_lists, in_iteration, behind,
-      at_end, at_reading;
+  Steps at_start, before_sort, behind_predict, with_lists, with_all_lists, in_iteration,
+      behind_iterations, behind, at_end, at_reading;
   Steps between;          ///< behind an update ...
   int between_every = 0;  ///< ... whose number is a multiple of this
   std::vector<LeftOut> without;
@@ -41,6 +41,8 @@ struct Builder : PassSet {
     if (!updates_alone) with_all_lists.push_back(step_of(pass));
   }
   void iteration(auto pass) { in_iteration.push_back(step_of(pass)); }
+  /// The pass runs behind the last iteration of an update, with which it may be fused.
+  void iterated(auto pass) { behind_iterations.push_back(step_of(pass)); }
   void after(auto pass) { behind.push_back(step_of(pass)); }
   /// The pass runs after all others, with or without lists.
   void end(auto pass) { at_end.push_back(step_of(pass)); }

@@ -207,8 +207,8 @@ Program assembled(const Scene& scene, PassSet b, bool without_time) {
   Program p;
   p.has_iterations = !b.in_iteration.empty();
   if (without_time)
-    b.at_start.clear(), b.before_sort.clear(), b.behind.clear(), b.at_end.clear(),
-        b.between.clear();
+    b.at_start.clear(), b.before_sort.clear(), b.behind_iterations.clear(), b.behind.clear(),
+        b.at_end.clear(), b.between.clear();
   Steps middle;
   if (b.in_iteration.empty() && b.behind.empty() &&
       b.before_sort.empty()) {  // no pairs: particles only move
@@ -223,6 +223,7 @@ Program assembled(const Scene& scene, PassSet b, bool without_time) {
       add_substeps(middle, b, scene.solver.iterations, shape.repeats, to - from);
       from = to;
     }
+    middle.insert(middle.end(), b.behind_iterations.begin(), b.behind_iterations.end());
   }
   const Steps end = b.behind + b.at_end;
   p.update = middle + end;

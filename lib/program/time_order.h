@@ -11,6 +11,8 @@ inline bool is_second_order(const Scene& s) {
                                               : s.time.order == TimeOrder::second;
 }
 
+inline bool is_first_order(const Scene& s) { return !is_second_order(s); }
+
 /// Directions of corrections are those of x* - kDirectionsBack dt v, and the prediction takes over
 /// kCarriedPush of the last step's push. The force of a step then acts on average where the step
 /// begins, as in Verlet's scheme, if kCarriedPush = (1 - kDirectionsBack)/(2 - kDirectionsBack).

@@ -18,6 +18,7 @@ inline const std::vector<std::array<std::string, 3>> kFusedPasses = {
     {"predict+sort", "predict", "sort"},
     {"delta+predict", "delta", "predict"},
     {"xsph+predict+sort", "xsph", "predict+sort"},
+    {"delta+pack motion", "delta", "pack motion"},
 };
 
 inline std::string pass_name(const ProgramStep& s) {

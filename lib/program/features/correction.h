@@ -15,13 +15,13 @@ template <Smoothing S, TensilePower tensile, class G, class Lists, class Coarse,
           class Boundary>
 auto delta_pass(const G& c, const Lists& lists, OwnRows<const typename G::Real> density,
                 StepCounts* moves_on, const Coarse& coarse, const Order& order,
-                const Boundary& boundary) {
+                const Boundary& boundary, Vec4<typename G::Real>* motion = nullptr) {
   auto p = c.p;
   p.sor = c.sor();
   return DeltaPass<typename G::Real, Lists, S, tensile, Coarse, Order, Boundary>{
       p,        boundary,     lists,         c[other<field::position>],
       density,  c[field::id], moved_rows(c), c[field::velocity],
-      moves_on, coarse,       order};
+      moves_on, coarse,       order,         motion};
 }
 inline bool has_tensile(const Scene& s) { return s.tensile && s.tensile->k != 0; }
 /// Lists: of the passes.
@@ -40,10 +40,10 @@ void with_turn_tensile(const Scene& s, F&& f) {
                  : f(std::integral_constant<TensilePower, TensilePower::none>{});
 }
 
-/// free: with moves_on in second order.
+/// free: with moves_on in second order. motion: DeltaPass::motion.
 template <class G>
 void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<typename G::Real>* free,
-                  StepCounts* moves_on) {
+                  StepCounts* moves_on, Vec4<typename G::Real>* motion = nullptr) {
   c.with_smoothing([&](auto s) {
     constexpr Smoothing S = decltype(s)::value;
     with_tensile<typename G::Lists>(c.scene, [&](auto tensile) {
@@ -56,7 +56,8 @@ void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<type
             constexpr bool near =
                 std::is_same_v<std::decay_t<decltype(boundary)>, SolidBoundary<typename G::Real>>;
             constexpr TensilePower form = near ? TensilePower::any : decltype(tensile)::value;
-            return delta_pass<S, form>(c, c.lists(), density, moves_on, coarse, order, boundary);
+            return delta_pass<S, form>(c, c.lists(), density, moves_on, coarse, order, boundary,
+                                       motion);
           });
         });
       });
@@ -69,17 +70,16 @@ inline bool pushes_in_moving_frames(const Scene& s) {
   return is_second_order(s) && has_moving_obstacles(s);
 }
 
-using DeltaNeeds =
-    Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
-          Updates<field::velocity>, PacksPositions, If<has_levels, LevelMoveNeeds>, MoveNeeds,
-          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
-             Places<other<field::velocity>>>,
-          If<pushes_in_moving_frames, Looks<field::solids_before>>>;
+using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
+                         Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
+                         If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
+                            Places<other<field::velocity>>>,
+                         If<pushes_in_moving_frames, Looks<field::solids_before>>>;
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
   using Needs = pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>,
-                           DeltaNeeds, ShareNeeds>;
+                           DeltaNeeds, PacksPositions, ShareNeeds>;
   static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr, nullptr); }
 };
 
@@ -88,7 +88,7 @@ struct Delta {
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds, PacksPositions>,
                      pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
                                 If<is_second_order, Updates<field::free_velocity>>, MoveNeeds,
                                 If<has_moving_obstacles, Looks<field::solids_before>>,

@@ -8,6 +8,7 @@
 #include "kernels/pass_friction.h"
 #include "kernels/pass_packed_xsph.h"
 #include "kernels/pass_xsph.h"
+#include "lib/program/features/correction.h"
 #include "lib/program/features/motion.h"
 #include "lib/scene/viscosity.h"
 
@@ -60,35 +61,64 @@ void with_xsph(const G& c, const Lists& lists, GatheredRows<Rows> position,
   });
 }
 
-/// Packs rows for XSPH into the second positions, which nothing needs until the next sort.
+/// The packed rows for XSPH are in an array that nothing needs until the next sort writes it: the
+/// second free velocities in time steps of second order, else the second positions.
+template <auto& free, auto& position>
+using WritesMotion = Needs<If<is_second_order, Writes<free>>, If<is_first_order, Writes<position>>>;
+template <auto& free, auto& position>
+using GathersMotion =
+    Needs<If<is_second_order, Gathers<free>>, If<is_first_order, Gathers<position>>>;
+template <class G, class Free, class Position>
+auto* motion_rows(const G& c, const Free& free, const Position& position) {
+  return is_second_order(c.scene) ? c.declared(free) : c.declared(position);
+}
+
+/// Packs rows for XSPH.
 struct PackMotion {
   static constexpr PassText text{"pack motion", "xsph", kLessXsph};
   using Needs = pbf::Needs<Reads<field::position, W::inverse_density>, Reads<field::velocity>,
-                           Writes<other<field::position>>>;
+                           WritesMotion<other<field::free_velocity>, other<field::position>>>;
   template <class G>
   static void launch(const G& c) {
     if constexpr (has_packed_rows<G>)
-      c.items(PackMotionPass{c.p.dt, c[field::position], c[field::velocity],
-                             c[other<field::position>]});
+      c.items(PackMotionPass{
+          c.p.dt, c[field::position], c[field::velocity],
+          OwnRows(motion_rows(c, other<field::free_velocity>, other<field::position>))});
   }
 };
 
-/// motion: where the packed rows are.
-template <auto& position, auto& velocity, auto& motion>
-using XsphNeeds =
-    Needs<If<is_not_packed, Gathers<position, W::inverse_density>, Gathers<velocity>>,
-          If<is_packed, Reads<position, W::inverse_density>, Reads<velocity>, Gathers<motion>>,
-          UsesLists, Adds<field::dissipation>>;
+/// The last correction of an update, which also packs rows for XSPH. In first order they would be
+/// in the array that it gathers. No lambda follows, so positions are not packed.
+struct DeltaPackMotion {
+  using Fuses = Pair<Delta, PackMotion>;
+  static constexpr PassText text{"delta+pack motion", "delta"};
+  using Needs = pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>,
+                           DeltaNeeds, ShareNeeds, Writes<other<field::free_velocity>>>;
+  template <class G>
+  static void launch(const G& c) {
+    if constexpr (has_packed_rows<G>)
+      launch_delta(c, c[field::density], nullptr, nullptr, c.declared(other<field::free_velocity>));
+  }
+};
+
+template <auto& position, auto& velocity, class Motion>
+using XsphNeeds = Needs<If<is_not_packed, Gathers<position, W::inverse_density>, Gathers<velocity>>,
+                        If<is_packed, Reads<position, W::inverse_density>, Reads<velocity>, Motion>,
+                        UsesLists, Adds<field::dissipation>>;
 
 struct Xsph {
   static constexpr PassText text{"xsph", "xsph", kLessXsph};
   using Flips = pbf::Flips<field::velocity>;
   using Needs =
-      pbf::Needs<XsphNeeds<field::position, other<field::velocity>, other<field::position>>,
+      pbf::Needs<XsphNeeds<field::position, other<field::velocity>,
+                           GathersMotion<other<field::free_velocity>, other<field::position>>>,
                  Writes<field::velocity>>;
   /// Calls use(pass).
-  static void with(const auto& c, const auto& lists, const auto& use) {
-    with_xsph(c, lists, c[field::position], c[other<field::velocity>], c[other<field::position>],
+  template <class G>
+  static void with(const G& c, const auto& lists, const auto& use) {
+    using Rows = Vec4<typename G::Real>;
+    const Rows* motion = motion_rows(c, other<field::free_velocity>, other<field::position>);
+    with_xsph(c, lists, c[field::position], c[other<field::velocity>], GatheredRows<Rows>(motion),
               c[field::velocity], nullptr, nullptr, use);
   }
   static void launch(const auto& c) {
@@ -101,7 +131,8 @@ struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
   using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
-  using Needs = pbf::Needs<XsphNeeds<other<field::position>, field::velocity, field::position>,
+  using Needs = pbf::Needs<XsphNeeds<other<field::position>, field::velocity,
+                                     GathersMotion<field::free_velocity, field::position>>,
                            SortPredictedNeeds, Places<other<field::velocity>>>;
   /// Calls use(pass, sort). sort(first): sorts after `first`, which is the pass or launches it.
   template <class G>
@@ -110,9 +141,9 @@ struct XsphPredictSort {
     const Rows* position = c[other<field::position>];
     Rows *from = c[field::velocity], *to = c[other<field::velocity>];
     using Gathered = GatheredRows<Rows>;
-    with_xsph(c, lists, Gathered(position), Gathered(from), Gathered(c[field::position]),
-              OwnRows<Rows>(to), c.declared(other<field::free_velocity>), c[field::bin].rows(),
-              [&](const auto& pass) {
+    const Rows* motion = motion_rows(c, field::free_velocity, field::position);
+    with_xsph(c, lists, Gathered(position), Gathered(from), Gathered(motion), OwnRows<Rows>(to),
+              c.declared(other<field::free_velocity>), c[field::bin].rows(), [&](const auto& pass) {
                 use(pass, [&](const auto& first) { sort_predicted(c, "xsph", first, to, from); });
               });
   }
@@ -157,12 +188,13 @@ struct Friction {
 };
 
 struct Viscosities {
-  using Passes = PassList<PackMotion, Xsph, XsphPredictSort, Friction>;
+  using Passes = PassList<PackMotion, DeltaPackMotion, Xsph, XsphPredictSort, Friction>;
   static void add(const Scene& s, auto& b) {
     const int sweeps = viscous_sweeps(s).sweeps;
     if (sweeps == 0) b.left_out("xsph pass", "no key viscosity");
     for (int k = 0; k < sweeps; ++k) {
-      if (b.shape.packed) b.after(PackMotion());
+      const bool in_delta = k == 0 && is_second_order(s);
+      if (b.shape.packed) in_delta ? b.iterated(PackMotion()) : b.after(PackMotion());
       b.after(Xsph());
       if (has_friction(s)) b.after(Friction());
     }

@@ -72,8 +72,8 @@ seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
 # delta
 seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w += p.tensile_k]])
 seeded_defect(frozen_particle delta kernels/pass_delta.h
-  [[set_row(position_out, i, with_w(inside, Real(1) / row(density, i)));]]
-  [[set_row(position_out, i, with_w(inside, Real(1) / row(density, i)));
+  [[set_row(position_out, i, with_w(inside, inverse_density));]]
+  [[set_row(position_out, i, with_w(inside, inverse_density));
     if constexpr (is_one<V>) {
       if (i == 7) position_out[7] = with_w(x, position_out[7].w);
     } else if (const int l = 7 - i[0]; l >= 0 && l < V::width) {
@@ -90,7 +90,7 @@ seeded_defect(s_corr_exponent delta kernels/pass_delta.h
   [[x = x * x;
     return x * x;]] [[return x * x;]])
 seeded_defect(inverse_density_missing delta kernels/pass_delta.h
-  [[with_w(inside, Real(1) / row(density, i))]] [[with_w(inside, V(1))]])
+  [[inverse_density = Real(1) / row(density, i);]] [[inverse_density = V(1);]])
 seeded_defect(one_iteration_less iterations lib/solver/stepper.h
   [[for (int k = 0; k < s.times; ++k) {]] [[for (int k = 0; k + 1 < s.times; ++k) {]])
 

@@ -268,8 +268,8 @@ TEST_CASE("passes touch what they declare, as they declare it, and declare nothi
     }
   for (const PassText& pass : pass_texts()) {
     CAPTURE(pass.name);
-    if (std::string(pass.name) == PackMotion::text.name) continue;  // of GPUs alone
-    CHECK(all.contains(pass.name));                                 // each pass has run
+    if (std::string(pass.name).ends_with(PackMotion::text.name)) continue;  // of GPUs alone
+    CHECK(all.contains(pass.name));                                         // each pass has run
   }
 }
 
