@@ -131,7 +131,7 @@ TEST_CASE("exchanges: substeps, repeated iterations, passes one by one and a mea
         "xsph+predict+sort[position]" + kRowMessage + packed + packed + packed);
   const std::string last = ", " + packed_lambda + ", delta+pack motion[position']";
   CHECK(middle({1, 1, 0, true}, {"viscosity.xsph=0.1", "time.order=2", "solver.iterations=2"}) ==
-        "xsph+predict+sort[free velocity]{position, velocity, free velocity, id, bin}" + packed +
+        "xsph+predict+sort[free velocity]{position, velocity, id, free velocity, bin}" + packed +
             last);
 
   const Program p = program_of("", {"viscosity.xsph=0.1"});
