@@ -193,6 +193,7 @@ struct Viscosities {
     const int sweeps = viscous_sweeps(s).sweeps;
     if (sweeps == 0) b.left_out("xsph pass", "no key viscosity");
     for (int k = 0; k < sweeps; ++k) {
+      // No feature before this one runs a pass between the iterations and the first sweep.
       const bool in_delta = k == 0 && is_second_order(s);
       if (b.shape.packed) in_delta ? b.iterated(PackMotion()) : b.after(PackMotion());
       b.after(Xsph());
