@@ -56,7 +56,13 @@ TEST_CASE("packed position: particles at one place have no distance, and zeros p
 
 TEST_CASE(
     "packed position: density is right to 1e-5 and lambda to 4e-5, and padding adds nothing") {
+  // Lambda loses the digits of rho - 1, more in some neighborhoods than in others: 3.1e-5 is the
+  // worst of 500 with rho off 1 by 0.1.
+  const unsigned draw = GENERATE(7u, 5u);
+  const double error_of_lambda = draw == 7 ? 1e-5 : 4e-5;
+  CAPTURE(draw);
   RandomVectors random;
+  random.bits.seed(draw);
   const Neighborhood all{GENERATE(1, 2, 40)};
   const std::size_t n = std::size_t(all.count);
   std::vector<Vec4<float>> position, out(n), velocity(n);
@@ -97,8 +103,7 @@ TEST_CASE(
     for (const double k : gradient) sum += g * g * k * k;
     CAPTURE(i);
     CHECK(density[std::size_t(i)] == Approx(rho).epsilon(1e-5));
-    // rho - 1 loses digits. The worst of 500 such neighborhoods with rho off 1 by 0.1: 3.1e-5.
-    CHECK(out[std::size_t(i)].w == Approx(-(rho - 1) / sum).epsilon(4e-5));
+    CHECK(out[std::size_t(i)].w == Approx(-(rho - 1) / sum).epsilon(error_of_lambda));
     CHECK(out[std::size_t(i)].x == a.x);  // at the position itself
   }
 }
