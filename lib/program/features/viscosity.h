@@ -63,11 +63,8 @@ void with_xsph(const G& c, const Lists& lists, GatheredRows<Rows> position,
 
 /// The packed rows for XSPH are in an array that nothing needs until the next sort writes it: the
 /// second free velocities in time steps of second order, else the second positions.
-template <auto& free, auto& position>
-using WritesMotion = Needs<If<is_second_order, Writes<free>>, If<is_first_order, Writes<position>>>;
-template <auto& free, auto& position>
-using GathersMotion =
-    Needs<If<is_second_order, Gathers<free>>, If<is_first_order, Gathers<position>>>;
+template <class Free, class Position>
+using PackedMotion = Needs<If<is_second_order, Free>, If<is_first_order, Position>>;
 template <class G, class Free, class Position>
 auto* motion_rows(const G& c, const Free& free, const Position& position) {
   return is_second_order(c.scene) ? c.declared(free) : c.declared(position);
@@ -76,8 +73,9 @@ auto* motion_rows(const G& c, const Free& free, const Position& position) {
 /// Packs rows for XSPH.
 struct PackMotion {
   static constexpr PassText text{"pack motion", "xsph", kLessXsph};
-  using Needs = pbf::Needs<Reads<field::position, W::inverse_density>, Reads<field::velocity>,
-                           WritesMotion<other<field::free_velocity>, other<field::position>>>;
+  using Needs =
+      pbf::Needs<Reads<field::position, W::inverse_density>, Reads<field::velocity>,
+                 PackedMotion<Writes<other<field::free_velocity>>, Writes<other<field::position>>>>;
   template <class G>
   static void launch(const G& c) {
     if constexpr (has_packed_rows<G>)
@@ -109,10 +107,10 @@ using XsphNeeds = Needs<If<is_not_packed, Gathers<position, W::inverse_density>,
 struct Xsph {
   static constexpr PassText text{"xsph", "xsph", kLessXsph};
   using Flips = pbf::Flips<field::velocity>;
-  using Needs =
-      pbf::Needs<XsphNeeds<field::position, other<field::velocity>,
-                           GathersMotion<other<field::free_velocity>, other<field::position>>>,
-                 Writes<field::velocity>>;
+  using Needs = pbf::Needs<XsphNeeds<field::position, other<field::velocity>,
+                                     PackedMotion<Gathers<other<field::free_velocity>>,
+                                                  Gathers<other<field::position>>>>,
+                           Writes<field::velocity>>;
   /// Calls use(pass).
   template <class G>
   static void with(const G& c, const auto& lists, const auto& use) {
@@ -131,9 +129,10 @@ struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
   using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
-  using Needs = pbf::Needs<XsphNeeds<other<field::position>, field::velocity,
-                                     GathersMotion<field::free_velocity, field::position>>,
-                           SortPredictedNeeds, Places<other<field::velocity>>>;
+  using Needs =
+      pbf::Needs<XsphNeeds<other<field::position>, field::velocity,
+                           PackedMotion<Gathers<field::free_velocity>, Gathers<field::position>>>,
+                 SortPredictedNeeds, Places<other<field::velocity>>>;
   /// Calls use(pass, sort). sort(first): sorts after `first`, which is the pass or launches it.
   template <class G>
   static void with(const G& c, const auto& lists, const auto& use) {
