@@ -79,8 +79,7 @@ class Batch {
   }
 
   int finish() {
-    const BatchSummary summary = batch_summary(
-        members_, ends_, out_, [this](const BatchMember& m) { return loaded(m).scene; });
+    const BatchSummary summary = batch_summary(members_, ends_, results_);
     if (!summary.note.empty()) log_.warning(summary.note);
     write_text_file(out_ + "/summary.csv", summary.csv(), Naming::own);
     write_text_file(out_ + "/summary.json", summary.json(), Naming::own);
@@ -152,6 +151,7 @@ class Batch {
 
   void ended(const BatchMember& m, const JobEnd& end) {
     ends_[m.name] = end;
+    if (o_.only < 0) results_.read(m);
     std::string line =
         fmt::format("[{}/{}] {}: {}", ends_.size(), members_.size(), m.name, exit_reason(end.code));
     if (!end.message.empty()) line += ": " + end.message;
@@ -168,6 +168,7 @@ class Batch {
   Log& log_;
   Stopwatch wall_;
   std::map<std::string, JobEnd> ends_;
+  RunResults results_{out_, [this](const BatchMember& m) { return loaded(m).scene; }};
 };
 
 int command_batch(const BatchOptions& o) {

@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <regex>
 #include <set>
 #include <utility>
@@ -14,25 +12,14 @@
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
-#include "lib/data/comparison.h"
 #include "lib/data/summary.h"
-#include "lib/io/run_file.h"
 #include "lib/io/table.h"
 #include "lib/scene/keys.h"
-#include "lib/scene/load.h"
 #include "lib/scene/number.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::campaign_module {
 namespace {
-
-/// Columns of a run's log whose last values are in the summary.
-std::vector<std::string> last_values() {
-  std::vector<std::string> names{"time", "update"};
-  for (const Diagnostic& d : diagnostics())
-    if (d.summary) names.push_back(d.name);
-  return names;
-}
 
 std::map<std::string, std::string> units_of_results() {
   std::map<std::string, std::string> units{{"time", "s"}, {"seconds", "s"}};
@@ -72,91 +59,6 @@ std::string unit_of_key(const std::string& key) {
   return found ? unit_text(*found) : "";
 }
 
-constexpr const char* kOfFile[] = {"particles", "frames", "warnings", "seconds"};
-
-/// A column that not every run has.
-struct NamedNumber {
-  std::string name, unit;
-  double value = 0;  ///< NaN: there is none
-};
-
-/// What a run file says: last measurements, numbers of particles, frames and warnings, seconds, as
-/// empty cells if there is no file; gauges and loads; comparisons with measurements.
-struct Results {
-  std::vector<Cell> cells;
-  std::vector<NamedNumber> readings, compared;
-  bool named = false;     ///< its scene says which readings
-  bool too_many = false;  ///< it does not, and they are too many
-};
-
-/// "compare/H2/rms"
-std::vector<NamedNumber> compared_in(const RunReader& file) {
-  std::vector<NamedNumber> all;
-  for (const StoredComparison& c : file.comparisons()) {
-    std::map<std::string, StoredComparison::Number> numbers;
-    for (const StoredComparison::Number& n : c.numbers) numbers[n.name] = n;
-    for (const std::string& name : comparison_numbers())
-      if (numbers.contains(name))
-        all.push_back({"compare/" + c.name + "/" + name, numbers[name].unit, numbers[name].value});
-  }
-  return all;
-}
-
-/// The scene of a member as it is now, or else that of its run; none: of an earlier version.
-std::optional<Scene> scene_of(const SceneOfMember& now, const BatchMember& m,
-                              const RunReader& file) {
-  try {
-    return now(m);
-  } catch (const Error&) {
-  }
-  try {
-    return parse_stored_scene(file.info().resolved_scene, m.name, {});
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
-/// Gauges and loads.
-void read_readings(const RunReader& file, const std::optional<Scene>& scene, Results& out) {
-  if (!scene) return;
-  const std::vector<SummaryColumn> columns = wanted_summary_columns(*scene);
-  const std::vector<double> values = summary_numbers(file, columns, scene->summary_from);
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    out.readings.push_back({columns[k].name, columns[k].unit, values[k]});
-  out.named = !scene->summary.empty();
-  out.too_many = columns.empty() && !summary_columns(*scene).empty();
-}
-
-Results read_results(const BatchMember& m, const std::string& out_folder,
-                     const SceneOfMember& now) {
-  const std::string path = out_folder + "/" + m.name + "/" + kRunFile;
-  const std::vector<std::string> names = last_values();
-  Results out;
-  std::vector<Cell>& cells = out.cells;
-  cells.resize(names.size() + std::size(kOfFile));
-  std::error_code error;
-  if (std::filesystem::exists(path, error)) try {
-      const RunReader file(path);
-      std::map<std::string, std::vector<double>> log = file.log();
-      for (std::size_t k = 0; k < names.size(); ++k)
-        if (!log[names[k]].empty()) cells[k] = log[names[k]].back();
-      const RunInfo info = file.info();
-      cells[names.size()] = info.particles;
-      cells[names.size() + 1] = file.frames();
-      cells[names.size() + 2] = std::int64_t(info.warnings.size());
-      double seconds = 0;
-      for (const auto& [name, column] : log)
-        if (name.starts_with("stage/"))
-          for (const double s : column) seconds += s;
-      cells.back() = seconds;
-      out.compared = compared_in(file);
-      read_readings(file, scene_of(now, m, file), out);
-    } catch (const Error&) {
-      cells.assign(cells.size(), Cell{});  // the message of the run tells what is wrong
-    }
-  return out;
-}
-
 /// Columns of all runs in the order of first appearance.
 class NamedColumns {
  public:
@@ -180,9 +82,9 @@ class NamedColumns {
 };
 
 /// Those of gauges and loads: where all would be too many, of the runs that name theirs.
-NamedColumns reading_columns_of(const std::vector<Results>& results, bool& too_many) {
+NamedColumns reading_columns_of(const std::vector<FileResults>& results, bool& too_many) {
   NamedColumns all, named;
-  for (const Results& r : results) {
+  for (const FileResults& r : results) {
     all.take(r.readings, true);
     if (r.named) named.take(r.readings, true);
   }
@@ -208,13 +110,11 @@ std::string exit_reason(int code) {
 }
 
 BatchSummary batch_summary(const std::vector<BatchMember>& members,
-                           const std::map<std::string, JobEnd>& ends, const std::string& out,
-                           const SceneOfMember& scene_now) {
+                           const std::map<std::string, JobEnd>& ends, RunResults& read) {
   const std::vector<std::string> keys = set_keys(members);
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
-  const std::vector<std::string> names = last_values();
+  const std::vector<std::string> names = file_columns();
   columns.insert(columns.end(), names.begin(), names.end());
-  columns.insert(columns.end(), std::begin(kOfFile), std::end(kOfFile));
   std::map<std::string, std::string> units = units_of_results();
   std::vector<std::string> of_keys;
   for (const std::string& key : keys) {
@@ -223,12 +123,11 @@ BatchSummary batch_summary(const std::vector<BatchMember>& members,
     units[of_keys.back()] = unit_of_key(key);
   }
   columns.insert(columns.begin() + 3, of_keys.begin(), of_keys.end());
-  std::vector<Results> results;
-  for (const BatchMember& m : members) results.push_back(read_results(m, out, scene_now));
+  const std::vector<FileResults> results = read.of(members);
   bool too_many = false;
   const NamedColumns readings = reading_columns_of(results, too_many);
   NamedColumns compared;
-  for (const Results& r : results) compared.take(r.compared, false);
+  for (const FileResults& r : results) compared.take(r.compared, false);
   for (const NamedColumns* more : {&readings, &std::as_const(compared)}) {
     columns.insert(columns.end(), more->names().begin(), more->names().end());
     units.insert(more->units().begin(), more->units().end());
@@ -247,7 +146,7 @@ BatchSummary batch_summary(const std::vector<BatchMember>& members,
     table.add(row);
   }
   BatchSummary summary{table, {}, {}};
-  const auto alone = std::ranges::count_if(results, &Results::too_many);
+  const auto alone = std::ranges::count_if(results, &FileResults::too_many);
   if (too_many)
     summary.note = fmt::format(
         "gauges and loads would be more than {} columns of summary.csv, and only those are there "

@@ -1,7 +1,6 @@
 // The table of `pbf batch`: one row per run, from the contents of its folder.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -9,8 +8,8 @@
 
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
+#include "lib/campaign/run_results.h"
 #include "lib/io/table.h"
-#include "lib/scene/scene.h"
 
 namespace pbf::campaign_module {
 
@@ -33,12 +32,8 @@ struct BatchSummary {
   /// {"version", "units": {column: unit}, "rows": [{column: value}]}
   std::string json() const;
 };
-/// The scene of a member as it is now. Throws Error.
-using SceneOfMember = std::function<Scene(const BatchMember&)>;
-/// scene_now: says which numbers of gauges and loads are wanted; where it throws, the scene of the
-/// run does.
+/// read: of the folder of the runs.
 BatchSummary batch_summary(const std::vector<BatchMember>& members,
-                           const std::map<std::string, JobEnd>& ends, const std::string& out,
-                           const SceneOfMember& scene_now);
+                           const std::map<std::string, JobEnd>& ends, RunResults& read);
 
 }  // namespace pbf::campaign_module
