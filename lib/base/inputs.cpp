@@ -1,5 +1,6 @@
 #include "lib/base/inputs.h"
 
+#include <pthread.h>
 #include <sys/stat.h>
 
 #include <mutex>
@@ -9,6 +10,10 @@ namespace pbf::base_module {
 namespace {
 
 std::mutex mutex;
+/// A copy of the process (fork) has only the thread that made it. Another one that held the lock
+/// would hold it there for ever.
+[[maybe_unused]] const int at_fork =
+    pthread_atfork([] { mutex.lock(); }, [] { mutex.unlock(); }, [] { mutex.unlock(); });
 
 std::set<std::string>& paths() {
   static std::set<std::string> all;

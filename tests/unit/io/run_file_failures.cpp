@@ -2,12 +2,14 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/io/h5.h"
 #include "lib/io/run_file.h"
 #include "tests/support/catch.h"
@@ -258,4 +260,16 @@ TEST_CASE("a file cut off anywhere is refused or read, never a crash", "[slow][r
     INFO("length " << length);
     error_of(ExitCode::io, {cut}, [&] { RunReader(cut).frame(0); });
   }
+}
+
+TEST_CASE("trying a run file comes to an end while another thread reads files") {
+  const TemporaryFolder folder;
+  const std::string path = good_file(folder, 1);
+  std::atomic<bool> end{false};
+  std::thread other([&] {
+    while (!end) note_input(path);
+  });
+  for (int k = 0; k < 100; ++k) CHECK_NOTHROW(try_run_file(path));
+  end = true;
+  other.join();
 }
