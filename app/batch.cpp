@@ -63,7 +63,10 @@ class Batch {
     const auto stop = [this] { return signal_token().why() || time_is_up(); };
     run_jobs(limits(o_), needs_,
              {[this](std::size_t k) { return arguments(k); }, stop,
-              [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); },
+              [this](std::size_t k, const JobEnd& end) {
+                ended(members_[k], end);
+                if (o_.only < 0) results_.read(members_[k]);  // else there is no summary
+              },
               [this](const std::string& text) { log_.note("pbf: " + text); }});
   }
 
@@ -151,7 +154,6 @@ class Batch {
 
   void ended(const BatchMember& m, const JobEnd& end) {
     ends_[m.name] = end;
-    if (o_.only < 0) results_.read(m);
     std::string line =
         fmt::format("[{}/{}] {}: {}", ends_.size(), members_.size(), m.name, exit_reason(end.code));
     if (!end.message.empty()) line += ": " + end.message;
