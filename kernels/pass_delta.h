@@ -51,6 +51,7 @@ struct DeltaPass {
   Vec4<Real>* motion = nullptr;           ///< out, unless null: packed_motion(), in float
 
   static constexpr int D = dimensions_of(S);
+  static constexpr bool finish_waits = Coarse::on;  ///< for what the levels write
   template <class V>
   static constexpr bool is_one = std::is_same_v<V, Real>;  ///< particle, not several
   using Own = Vec4<Real>;

@@ -2,6 +2,7 @@
 // displacement that follows from them. kernels/README.md, "Levels".
 #pragma once
 
+#include "kernels/pass_chain.h"
 #include "kernels/pass_level_cells.h"
 
 namespace pbf::PBF_VARIANT {
@@ -19,6 +20,7 @@ struct LevelSumPass : LevelBrickPass<D> {
   const Real* density;
   std::int64_t* sum;  ///< out, of each cell in kExcessUnit
 
+  static constexpr Chain chain = Chain::first;
   static constexpr int lanes = 2, at_once = 16;  ///< loads that are issued together
   using Part = std::int64_t;
   PBF_HD Part part(GridPlace cell, int lane, int of) const {
@@ -58,10 +60,13 @@ struct LevelMultiplierPass : LevelSums {
   const Real* answer;
   Real* multiplier;  ///< out, h^2
 
+  static constexpr Chain chain = Chain::inner;
   using Part = std::int64_t;
+  /// Its multiplier is 0, whatever the sums are.
+  PBF_HD bool is_off(int item) const { return answer[node(item)] == Real(0); }
   PBF_HD Part part(int item, int lane, int of) const {
     Part sum_here = 0;
-    if (answer[node(item)] != Real(0))
+    if (!is_off(item))
       for_terms(node(item), lane, of, [&](std::int64_t value, int weight) {
         sum_here += term(value, weight);
         return false;
@@ -84,6 +89,7 @@ struct LevelMovePass {
   const Vec4<Real>* factor;
   Vec4<Real>* move;  ///< out, h
 
+  static constexpr Chain chain = Chain::inner;
   PBF_HD void operator()(int c) const {
     const Vec4<Real> f = factor[c];
     Vec3<Real> slope{};

@@ -237,13 +237,13 @@ class Stepper {
     c_.for_features([&](auto& memory) { memory.forget(c_); });
   }
   void launch(int pass) {
-    launch_pass<Passes>(pass, c_);
+    beside_.with(c_, pass, [&] { launch_pass<Passes>(pass, c_); });
     c_.exec.mark(c_.booked(Passes::texts[std::size_t(pass)].stage));
   }
   /// Several steps in one launch or beside each other, where the executor can.
   void run(const Steps& steps) {
     for (std::size_t k = 0; k < steps.size(); ++k)
-      if (!take_turns(c_, steps, k) && !with_lists(c_, steps, k, [&](int p) { launch(p); }))
+      if (!take_turns(c_, steps, k) && !beside_.start(c_, steps, k, [&](int p) { launch(p); }))
         run(steps[k], [](int) {});
   }
   void run(const ProgramStep& s, const auto& seen) {
@@ -286,14 +286,14 @@ class Stepper {
   }
 
   void sum_density() {
-    if (density_is_current_) return;
-    launch_pass<Passes>(Passes::template index_of<Density>(), c_);
-    density_is_current_ = true;
+    if (!std::exchange(density_is_current_, true))
+      launch_pass<Passes>(Passes::template index_of<Density>(), c_);
   }
 
   const Plan& plan_;
   Context c_;
   const Program* program_;
+  PassesBeside beside_;
   bool density_is_current_ = false;
 };
 

@@ -216,3 +216,25 @@ TEST_CASE("with levels and solver.reproducible the CPU's bytes come out, on 1 th
   CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f64).get(),
                    b->download({"velocity", "density"}, pbf::ScalarType::f64).get()));
 }
+
+TEST_CASE("with levels, recorded updates leave what the same updates leave one by one", "[slow]") {
+  Case c;
+  SECTION("a wide box, nearly empty: most nodes are off") {
+    c = in_box(jittered_block(20, 20, 34, 0.2, 0.2, 1, 0.985), {90, 90, 50});
+  }
+  SECTION("a full box: no node is off") { c = column(); }
+  SECTION("air above: all nodes are off") {
+    c = in_box(jittered_block(24, 24, 2, 0.2, 0.2), {40, 40, 40});
+  }
+  SECTION("every particle is near an obstacle") {
+    c = in_box(jittered_block(40, 40, 3, 0.1, 0.2), {40.4, 40.4, 30});
+    obstacle_test::Placing(c.scene).plane({0, 0, 0.2}, {0, 0, 1});
+    c = obstacle_test::without_inner(c, 1e-3);
+  }
+  c.scene.time.step = 5e-4;
+  auto recorded = make(c), alone = make(c);
+  const backend_test::Ending a = backend_test::ending_of(*recorded, false, 74),
+                             b = backend_test::ending_of(*alone, true, 74);
+  REQUIRE(std::isfinite(a.compression));
+  backend_test::check_same(a, b);
+}

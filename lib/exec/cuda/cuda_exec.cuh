@@ -67,7 +67,7 @@ class CudaExec : public CudaPasses {
       --left;
     }
     since_profile_ -= updates;
-    recorded_.repeat(left, u, launcher_.stream);
+    recorded_.repeat(left, u, [this] { return launcher_.ready(); });
   }
   void forget_recorded() { recorded_.drop(); }
   int largest_batch(int n) const { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
@@ -181,8 +181,10 @@ class CudaExec : public CudaPasses {
     if (!aside_) aside_ = std::make_unique<EdgeStream>();
     return !profiling_;
   }
-  /// Launches small() on a stream of its own beside large(); what follows needs both.
-  void run_beside(const auto& small, const auto& large) { aside_->beside(launcher_, small, large); }
+  /// Launches small() on a stream of its own beside large(). What follows needs both, but for what
+  /// meanwhile() launches next, which needs large() alone.
+  void run_beside(const auto& small, const auto& large) { aside_->ahead(launcher_, small, large); }
+  void meanwhile(const auto& launches) { launcher_.meanwhile(launches); }
 
 #ifndef PBF_PINNED
   static constexpr bool packed_rows = true;  ///< has passes of packed rows

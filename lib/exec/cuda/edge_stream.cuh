@@ -39,11 +39,7 @@ class EdgeStream {
   void beside(Launcher& launcher, const Edges& edges, const Inner& inner) {
     const cudaEvent_t awaited = std::exchange(launcher.awaited, nullptr);
     follow(launcher.stream);
-    std::swap(launcher.stream, stream_);
-    launcher.alone = true;
-    edges();
-    std::swap(launcher.stream, stream_);
-    PBF_CUDA_CHECK(cudaEventRecord(edges_, stream_));
+    launch_aside(launcher, edges);
     launcher.alone = true;
     inner();
     launcher.note_arrival();
@@ -51,6 +47,16 @@ class EdgeStream {
     launcher.alone = true;
     launcher.awaited = awaited;
     launcher.split = true;
+  }
+  /// Launches small() beside large(). What is launched next waits for both, unless
+  /// Launcher::meanwhile() launches it.
+  template <class Small, class Large>
+  void ahead(Launcher& launcher, const Small& small, const Large& large) {
+    follow(launcher.ready());
+    launch_aside(launcher, small);
+    launcher.alone = true;
+    large();
+    launcher.awaited = edges_;
   }
   /// exchange(stream), of rows at the cuts.
   template <class Exchange>
@@ -95,6 +101,16 @@ class EdgeStream {
       for (cudaEvent_t* e : {&t.begin, &t.end, &t.arrived}) PBF_CUDA_CHECK(cudaEventCreate(e));
     }
     return timed_[used_++];
+  }
+  /// Launches on this stream, and records edges_ behind it.
+  template <class Launches>
+  void launch_aside(Launcher& launcher, const Launches& launches) {
+    const bool alone = std::exchange(launcher.alone, true);
+    std::swap(launcher.stream, stream_);
+    launches();
+    std::swap(launcher.stream, stream_);
+    launcher.alone = alone;
+    PBF_CUDA_CHECK(cudaEventRecord(edges_, stream_));
   }
   void follow(cudaStream_t main) {
     PBF_CUDA_CHECK(cudaEventRecord(main_, main));

@@ -4,8 +4,10 @@
 #include <cuda_runtime.h>
 
 #include <cstdint>
+#include <utility>
 
 #include "kernels/hd.h"
+#include "kernels/pass_chain.h"
 #include "kernels/row_state.h"
 #include "lib/exec/cuda/check.h"
 
@@ -57,6 +59,37 @@ __device__ __forceinline__ void wait_for_previous() {
 #endif
 }
 
+/// The kernel behind may be set up, and run up to its wait_for_previous(), from now on.
+__device__ __forceinline__ void let_next_begin() {
+#if __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+/// First statements of the kernel of a pass (kernels/pass_chain.h). A kernel begins when all blocks
+/// of the one before it let it or have ended, so all that its blocks wait for runs.
+template <class Pass>
+__device__ __forceinline__ void let_chain_begin() {
+  if constexpr (chain_of<Pass>() == Chain::inner) let_next_begin();
+}
+template <class Pass>
+__device__ __forceinline__ void begin_pass() {
+  let_chain_begin<Pass>();
+  if constexpr (!finish_waits<Pass>()) wait_for_previous();
+  if constexpr (chain_of<Pass>() == Chain::first) let_next_begin();
+}
+template <class Pass, class Own, class Sum>
+__device__ __forceinline__ void finish_pass(const Pass& pass, int i, const Own& own,
+                                            const Sum& sum) {
+  if constexpr (finish_waits<Pass>()) wait_for_previous();
+  pass.finish(i, own, sum);
+}
+/// Last statement of the kernel of a neighbor sum: threads without a row wait too, so that it does
+/// not end before the passes beside it.
+template <class Pass>
+__device__ __forceinline__ void end_pass() {
+  if constexpr (finish_waits<Pass>()) wait_for_previous();
+}
+
 /// Launches kernels on a stream: one after the other, each with programmatic dependent launch, if
 /// the device has it, which hides most of the time between two kernels.
 struct Launcher {
@@ -95,6 +128,13 @@ struct Launcher {
   void start_together(void (*kernel)(P...), int blocks, int block, std::size_t shared,
                       const A&... args) {
     start_blocks(kernel, unsigned(blocks), block, shared, true, args...);
+  }
+
+  /// Launches what needs nothing of what is awaited.
+  void meanwhile(const auto& launches) {
+    const cudaEvent_t others = std::exchange(awaited, nullptr);
+    launches();
+    awaited = others;
   }
 
  private:

@@ -42,7 +42,7 @@ constexpr int kListedBlocks = 1024;
 template <class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) item_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
-  wait_for_previous();
+  begin_pass<Pass>();
   const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
   if (i < n && !leaves_out(rows, i)) pass(i);
 }
@@ -76,10 +76,11 @@ template <class Rows, class Pass>
 __global__ void __launch_bounds__(kIsWide<Pass> ? 768 : kBlock, kPairBlocks<Pass>)
     pair_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
-  wait_for_previous();
+  begin_pass<Pass>();
   const int block = kIsWide<Pass> ? blockDim.x : kBlock;
   const int i = first_of(rows) + blockIdx.x * block + threadIdx.x;
   if (i < n && !leaves_out(rows, i)) sum_over_words(pass, i);
+  end_pass<Pass>();
 }
 
 /// For items 0 .. *count - 1.
@@ -103,13 +104,14 @@ __device__ __forceinline__ int thread_of_row(const Rows& rows, int n) {
 template <int lanes, class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(Rows rows, Pass pass) {
   const int n = end_of(rows);
-  wait_for_previous();
+  begin_pass<Pass>();
   const int thread = thread_of_row<lanes>(rows, n);
 #ifdef PBF_PINNED
   sum_in_order_by_lanes<lanes, kBlock>(pass, thread, n);
 #else
   sum_over_neighbors_by_lanes<lanes>(pass, thread, n);
 #endif
+  end_pass<Pass>();
 }
 
 /// One thread makes a list. Large blocks, because adjacent lists have most candidates in common;

@@ -18,13 +18,14 @@ class RecordedUpdates {
   ~RecordedUpdates() { drop(); }
 
   /// Runs `left` updates. Missing graphs are recorded: u.step(updates) with the stream captured.
-  template <class Updates>
-  void repeat(int left, Updates& u, cudaStream_t stream) {
+  /// ready(): the stream, behind all that was launched.
+  template <class Updates, class Ready>
+  void repeat(int left, Updates& u, const Ready& ready) {
     for (const int size : {0, 1, 2})
       for (; left >= kUpdates[size]; left -= kUpdates[size]) {
         cudaGraphExec_t& graph = graph_[{size, u.launch()}];
-        if (!graph) record(graph, kUpdates[size], u, stream);
-        PBF_CUDA_CHECK(cudaGraphLaunch(graph, stream));
+        if (!graph) record(graph, kUpdates[size], u, ready);
+        PBF_CUDA_CHECK(cudaGraphLaunch(graph, ready()));
         u.moved();
       }
     if (left) u.step(1);
@@ -44,17 +45,19 @@ class RecordedUpdates {
   /// between graphs.
   static constexpr int kUpdates[3] = {64, 8, 2};
 
-  template <class Updates>
-  void record(cudaGraphExec_t& out, int updates, Updates& u, cudaStream_t stream) {
+  template <class Updates, class Ready>
+  void record(cudaGraphExec_t& out, int updates, Updates& u, const Ready& ready) {
     cudaGraph_t graph = nullptr;
-    PBF_CUDA_CHECK(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+    PBF_CUDA_CHECK(cudaStreamBeginCapture(ready(), cudaStreamCaptureModeThreadLocal));
     u.step(updates);
-    PBF_CUDA_CHECK(cudaStreamEndCapture(stream, &graph));
+    PBF_CUDA_CHECK(cudaStreamEndCapture(ready(), &graph));
     std::size_t nodes = 0;
     PBF_CUDA_CHECK(cudaGraphGetNodes(graph, nullptr, &nodes));
     launches_ = double(nodes) / updates;
     ++recordings_;
-    const cudaError_t made = cudaGraphInstantiate(&out, graph, 0);
+    // Else all run with the priority of the stream that the graph is launched in.
+    const cudaError_t made =
+        cudaGraphInstantiate(&out, graph, cudaGraphInstantiateFlagUseNodePriority);
     cudaGraphDestroy(graph);
     PBF_CUDA_CHECK(made);
   }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "kernels/pair_sum.h"
+#include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/program/list_capacity.h"
 
 namespace pbf::PBF_VARIANT {
@@ -129,7 +130,7 @@ __device__ __forceinline__ void sum_over_words(const Pass& pass, int i) {
   const auto own = pass.own(i);
   typename Pass::Sum sum{};
   pass.lists.for_each_word(i, [&](const int4& word) { add_word(pass, sum, own, word); });
-  pass.finish(i, own, sum);
+  finish_pass(pass, i, own, sum);
 }
 
 /// Several threads share the neighbors of one particle: for few particles, where a pass waits for
@@ -159,7 +160,7 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
 #pragma unroll
     for (int half = lanes / 2; half > 0; half /= 2) x += __shfl_xor_sync(0xffffffffu, x, half);
   });
-  if (valid && lane == 0) pass.finish(i, own, sum);
+  if (valid && lane == 0) finish_pass(pass, i, own, sum);
 }
 
 /// The same with the bits of a sum by one thread. The threads compute 4 * lanes terms at a time and
@@ -202,7 +203,7 @@ __device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thre
   if (!valid || lane != 0) return;
   Sum sum;
   for (int c = 0; c < parts; ++c) reinterpret_cast<Real*>(&sum)[c] = mine[0][c];
-  pass.finish(i, own, sum);
+  finish_pass(pass, i, own, sum);
 }
 
 }  // namespace pbf::PBF_VARIANT
