@@ -33,14 +33,12 @@ class EdgeStream {
     cudaStreamDestroy(stream_);
   }
 
-  /// Launches of edges() are for the rows at the cuts, those of inner() for the others; or neither
-  /// needs results of the other.
+  /// Launches of edges() are for the rows at the cuts, those of inner() for the others.
   template <class Edges, class Inner>
   void beside(Launcher& launcher, const Edges& edges, const Inner& inner) {
     const cudaEvent_t awaited = std::exchange(launcher.awaited, nullptr);
     follow(launcher.stream);
     launch_aside(launcher, edges);
-    launcher.alone = true;
     inner();
     launcher.note_arrival();
     PBF_CUDA_CHECK(cudaStreamWaitEvent(launcher.stream, edges_, 0));
@@ -54,7 +52,6 @@ class EdgeStream {
   void ahead(Launcher& launcher, const Small& small, const Large& large) {
     follow(launcher.ready());
     launch_aside(launcher, small);
-    launcher.alone = true;
     large();
     launcher.awaited = edges_;
   }
@@ -102,14 +99,15 @@ class EdgeStream {
     }
     return timed_[used_++];
   }
-  /// Launches on this stream, and records edges_ behind it.
+  /// Launches on this stream, and records edges_ behind it. The next launch on the other one is
+  /// alone.
   template <class Launches>
   void launch_aside(Launcher& launcher, const Launches& launches) {
-    const bool alone = std::exchange(launcher.alone, true);
+    launcher.alone = true;
     std::swap(launcher.stream, stream_);
     launches();
     std::swap(launcher.stream, stream_);
-    launcher.alone = alone;
+    launcher.alone = true;
     PBF_CUDA_CHECK(cudaEventRecord(edges_, stream_));
   }
   void follow(cudaStream_t main) {
