@@ -51,6 +51,7 @@ PBF_HD std::uint32_t unpacked_way(float word, float last) {
   return bits_of(word) << 16 | low >> 16;
 #endif
 }
+PBF_HD bool pads_motion(const Vec4<float>& row) { return (bits_of(row.w) & kDensityMask) == 0; }
 /// x_a - x_b, h.
 PBF_HD Vec3<float> packed_distance(const Vec4<float>& a, const Vec4<float>& b) {
   return kRingStep * Vec3<float>{ring_difference(bits_of(a.x), bits_of(b.x)),

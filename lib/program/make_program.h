@@ -48,7 +48,10 @@ struct Builder : PassSet {
   void end(auto pass) { at_end.push_back(step_of(pass)); }
   /// The pass runs with the lists of an update behind it, if the number of the update is a multiple
   /// of `updates`: the same number for all features.
-  void every(int updates, auto pass) {
+  template <class Pass>
+  void every(int updates, Pass pass) {
+    static_assert(
+        !requires { typename Pass::Flips; }, "a recording ends as it began");
     between.push_back(step_of(pass));
     between_every = updates;
   }

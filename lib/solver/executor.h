@@ -3,6 +3,7 @@
 // It contains no physics.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -89,12 +90,13 @@ struct Body {
 struct Write {
   void operator()(const std::vector<float*>&) const {}
 };
-/// Updates that can be recorded.
+/// Updates that can be recorded (lib/solver/batch.h).
 struct Updates {
   int capacity() const { return 0; }
   void step(int) {}
-  void moved() {}
-  std::pair<int, int> launch() const { return {}; }
+  bool has_form(int) const { return true; }
+  std::array<int, 4> recording(int) const { return {}; }
+  void replayed(int) {}
 };
 }  // namespace archetype
 

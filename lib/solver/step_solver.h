@@ -10,6 +10,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/program/make_program.h"
 #include "lib/program/time_levels.h"
+#include "lib/solver/batch.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/executor.h"
 #include "lib/solver/solver.h"
@@ -170,7 +171,8 @@ class StepSolver final : public Solver, public Inspection {
       until_lists_fit(
           [&] {
             before_steps(done, batch);
-            repeat(done, batch);
+            Batch<Stepping> steps(*stepper_, at(done), steps_between());
+            exec_.repeat(batch, steps);
           },
           [&] { batch = batch_ = std::min(batch, kFirstBatch); });
       left -= batch;
@@ -179,19 +181,12 @@ class StepSolver final : public Solver, public Inspection {
                                           exec_.largest_batch(stepper_->capacity())));
     }
   }
-  /// `steps` steps from the one behind `done` on, and what comes between updates.
-  void repeat(std::int64_t done, int steps) {
-    const std::int64_t every = steps_between();
-    for (int part = steps; steps > 0; steps -= part, done += part) {
-      part = every == 0 ? steps : int(std::min<std::int64_t>(steps, every - at(done) % every));
-      exec_.repeat(part, *stepper_);
-      between(done + part);
-    }
-  }
   /// The passes between updates, if they come behind this step.
   void between(std::int64_t done) {
-    if (const std::int64_t every = steps_between(); every != 0 && at(done) % every == 0)
-      stepper_->between();
+    const std::int64_t every = steps_between();
+    if (every == 0 || at(done) % every != 0) return;
+    exec_.begin();
+    stepper_->between();
   }
   /// From one time of these passes to the next; 0: there are none.
   std::int64_t steps_between() const {

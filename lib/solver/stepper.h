@@ -66,10 +66,7 @@ class Stepper {
   }
 
   /// The passes behind some updates (Program::between), with the lists of the update before.
-  void between() {
-    c_.exec.begin();
-    run(program_->between);
-  }
+  void between() { run(program_->between); }
   const Program& program() const { return *program_; }
   /// One update with the results of each stage.
   StepTrace trace(const TraceOptions& options) {

@@ -58,6 +58,37 @@ TEST_CASE("packed rows move particles as the CPU in double does, nearly as well 
   if (pbf::is_fast_on_gpu(c.scene)) CHECK(packed != plain);
 }
 
+TEST_CASE("packed rows: hyperviscosity takes what it takes of the CPU in double, and no momentum") {
+  // Small and large differences, of which it leaves more.
+  const Case c = here(jittered_block(12, 11, 13, GENERATE(0.0, 0.3), 0.01));
+  const auto velocities = [&](bool exact, double rate) {
+    Case of = c;
+    of.scene.solver.hyperviscosity = rate;
+    if (exact) of.scene.backend = pbf::Backend::cpu, of.scene.precision = pbf::Precision::dbl;
+    const auto solver = solver_of(of, !exact);
+    solver->step(2);  // it acts behind the second
+    return solver->state().velocity;
+  };
+  const auto taken = [&](bool exact) {
+    std::vector<double> v = velocities(exact, 10);
+    const std::vector<double> without = velocities(exact, 0);
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= without[k];
+    return v;
+  };
+  const std::vector<double> of_double = taken(true), packed = taken(false);
+  double squares = 0, off = 0, sum[3] = {};
+  for (std::size_t k = 0; k < packed.size(); ++k) {
+    squares += of_double[k] * of_double[k];
+    off += (packed[k] - of_double[k]) * (packed[k] - of_double[k]);
+    sum[k % 3] += packed[k];
+  }
+  const double particles = double(packed.size() / 3), effect = std::sqrt(squares / particles);
+  CAPTURE(effect, off, sum[0], sum[1], sum[2]);
+  CHECK(effect > 1e-3);
+  CHECK(std::sqrt(off / particles) < (is_double() ? 1e-9 : 5e-3) * effect);
+  for (const double of_axis : sum) CHECK(std::abs(of_axis) / particles < 1e-4 * effect);
+}
+
 TEST_CASE("packed rows: updates give the bits of passes one by one") {
   Case c = backend_test::falling_block(13);
   SECTION("second order") {}

@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 /// Lines of sources (.h .cpp .cu .cuh).
 const std::map<std::string, int> kBudget = {
-    {"app", 2700},        {"kernels", 8450},  {"lib/base", 1870},   {"lib/campaign", 4720},
-    {"lib/data", 1590},   {"lib/exec", 8040}, {"lib/io", 4370},     {"lib/program", 9980},
-    {"lib/render", 3950}, {"lib/run", 6450},  {"lib/scene", 10550}, {"lib/solver", 3300},
+    {"app", 2700},        {"kernels", 8520},  {"lib/base", 1870},   {"lib/campaign", 4720},
+    {"lib/data", 1590},   {"lib/exec", 8040}, {"lib/io", 4370},     {"lib/program", 10030},
+    {"lib/render", 3950}, {"lib/run", 6450},  {"lib/scene", 10550}, {"lib/solver", 3360},
     {"lib/verify", 2160},
 };
 constexpr int kLongestFile = 300;

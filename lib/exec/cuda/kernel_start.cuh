@@ -66,16 +66,21 @@ __device__ __forceinline__ void let_next_begin() {
 #endif
 }
 /// First statements of the kernel of a pass (kernels/pass_chain.h). A kernel begins when all blocks
-/// of the one before it let it or have ended, so all that its blocks wait for runs.
-template <class Pass>
-__device__ __forceinline__ void let_chain_begin() {
+/// of the one before it let it or have ended, so all that its blocks wait for runs. off(), for a
+/// pass with is_off(): whether this thread needs nothing of the passes in front, whose results
+/// off() does not read. A block whose threads are all off does not wait, and makes room for others.
+/// The first block always waits, so that the kernel does not end before these passes.
+template <class Pass, class Off>
+__device__ __forceinline__ void begin_pass(const Off& off) {
   if constexpr (chain_of<Pass>() == Chain::inner) let_next_begin();
+  bool waits = !finish_waits<Pass>();
+  if constexpr (requires { &Pass::is_off; }) waits = !__syncthreads_and(off()) || blockIdx.x == 0;
+  if (waits) wait_for_previous();
+  if constexpr (chain_of<Pass>() == Chain::first) let_next_begin();
 }
 template <class Pass>
 __device__ __forceinline__ void begin_pass() {
-  let_chain_begin<Pass>();
-  if constexpr (!finish_waits<Pass>()) wait_for_previous();
-  if constexpr (chain_of<Pass>() == Chain::first) let_next_begin();
+  begin_pass<Pass>([] { return false; });
 }
 template <class Pass, class Own, class Sum>
 __device__ __forceinline__ void finish_pass(const Pass& pass, int i, const Own& own,

@@ -3,8 +3,8 @@
 
 #include <cuda_runtime.h>
 
+#include <array>
 #include <map>
-#include <utility>
 
 #include "lib/exec/cuda/check.h"
 
@@ -17,18 +17,22 @@ class RecordedUpdates {
   RecordedUpdates& operator=(const RecordedUpdates&) = delete;
   ~RecordedUpdates() { drop(); }
 
-  /// Runs `left` updates. Missing graphs are recorded: u.step(updates) with the stream captured.
-  /// ready(): the stream, behind all that was launched.
+  /// Runs `left` updates (lib/solver/batch.h). Missing graphs are recorded: u.step(n) with the
+  /// stream captured. ready(): the stream, behind all that was launched.
   template <class Updates, class Ready>
   void repeat(int left, Updates& u, const Ready& ready) {
-    for (const int size : {0, 1, 2})
-      for (; left >= kUpdates[size]; left -= kUpdates[size]) {
-        cudaGraphExec_t& graph = graph_[{size, u.launch()}];
-        if (!graph) record(graph, kUpdates[size], u, ready);
+    while (left > 0) {
+      const int n = most_updates(left, u);
+      if (n == 1) {
+        u.step(1);
+      } else {
+        cudaGraphExec_t& graph = graph_[u.recording(n)];
+        if (!graph) record(graph, n, u, ready);
         PBF_CUDA_CHECK(cudaGraphLaunch(graph, ready()));
-        u.moved();
+        u.replayed(n);
       }
-    if (left) u.step(1);
+      left -= n;
+    }
   }
   void drop() {
     for (const auto& [key, graph] : graph_)
@@ -40,13 +44,18 @@ class RecordedUpdates {
   int recordings() const { return recordings_; }
 
  private:
-  /// Updates per graph. An update swaps buffers, so a graph has an even number of updates, and each
-  /// placement of buffers and number of launched rows has its own graphs. Long graphs avoid gaps
-  /// between graphs.
-  static constexpr int kUpdates[3] = {64, 8, 2};
+  /// Updates of the next graph, at most `left`; 1: none. An update swaps buffers, so a graph has an
+  /// even number of updates, and each placement of buffers and number of launched rows has its own
+  /// graphs. Long graphs avoid gaps between graphs.
+  template <class Updates>
+  static int most_updates(int left, const Updates& u) {
+    for (const int n : {64, 8, 4, 2})
+      if (n <= left && u.has_form(n)) return n;
+    return 1;
+  }
 
   template <class Updates, class Ready>
-  void record(cudaGraphExec_t& out, int updates, Updates& u, const Ready& ready) {
+  void record(cudaGraphExec_t& out, int updates, Updates u, const Ready& ready) {
     cudaGraph_t graph = nullptr;
     PBF_CUDA_CHECK(cudaStreamBeginCapture(ready(), cudaStreamCaptureModeThreadLocal));
     u.step(updates);
@@ -62,7 +71,7 @@ class RecordedUpdates {
     PBF_CUDA_CHECK(made);
   }
 
-  std::map<std::pair<int, std::pair<int, int>>, cudaGraphExec_t> graph_;  ///< by size and launch()
+  std::map<std::array<int, 4>, cudaGraphExec_t> graph_;  ///< by Batch::recording()
   double launches_ = 0;
   int recordings_ = 0;
 };

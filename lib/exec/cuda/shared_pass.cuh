@@ -83,35 +83,24 @@ __device__ __forceinline__ void sum_of_some_lanes(Part& mine, int lanes,
 
 /// Groups of items, each shared by a power of two up to 32 threads or by a block. All items of a
 /// block are of one group.
-constexpr int kTeam = 512;
+constexpr int kTeam = 256;
 template <class Pass>
 __host__ __device__ int team_blocks(const Pass& pass, int group) {
   return int((std::int64_t(pass.size(group)) * pass.lanes(group, kTeam) + kTeam - 1) / kTeam);
 }
-/// Finishes the items of a block, if all are off (Pass::is_off(), which needs nothing of the passes
-/// in front). Then the block need not wait for these, and makes room for others. The first block
-/// always waits, so that the kernel does not end before them.
 template <class Pass>
-__device__ __forceinline__ bool all_off(const Pass& pass, int item, bool mine, bool writes) {
-  if constexpr (requires { pass.is_off(item); }) {
-    if (blockIdx.x == 0 || !__syncthreads_and(!mine || pass.is_off(item))) return false;
-    if (mine && writes) pass.finish(item, typename Pass::Part{});
-    return true;
-  } else {
-    return false;
-  }
-}
-template <class Pass>
-__global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pass pass) {
+__global__ void __launch_bounds__(kTeam, 1024 / kTeam)
+    team_kernel(const __grid_constant__ Pass pass) {
   using Part = typename Pass::Part;
-  let_chain_begin<Pass>();
   int group = 0, first = 0, block = blockIdx.x;
   for (int b; block >= (b = team_blocks(pass, group)); block -= b) first += pass.size(group++);
   const int lanes = pass.lanes(group, kTeam), lane = threadIdx.x % lanes;
   const int i = block * (kTeam / lanes) + threadIdx.x / lanes;
   const bool mine_is_one = i < pass.size(group);
-  if (all_off(pass, first + i, mine_is_one, lane == 0)) return;
-  wait_for_previous();
+  begin_pass<Pass>([&] {
+    if constexpr (requires { &Pass::is_off; }) return !mine_is_one || pass.is_off(first + i);
+    return false;
+  });
   Part mine{};
   if (mine_is_one) mine = pass.part(first + i, lane, lanes);
   if (lanes == kTeam)

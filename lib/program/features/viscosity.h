@@ -61,8 +61,9 @@ void with_xsph(const G& c, const Lists& lists, GatheredRows<Rows> position,
   });
 }
 
-/// The packed rows for XSPH are in an array that nothing needs until the next sort writes it: the
-/// second free velocities in time steps of second order, else the second positions.
+/// The packed rows for XSPH and hyperviscosity are in an array that nothing needs until the next
+/// sort writes it: the second free velocities in time steps of second order, else the second
+/// positions.
 template <class Free, class Position>
 using PackedMotion = Needs<If<is_second_order, Free>, If<is_first_order, Position>>;
 template <class G, class Free, class Position>
